@@ -1,0 +1,155 @@
+// One image channel in memory: owned, movable, rows on 64-byte lines.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstring>
+#include <memory>
+#include <new>
+#include <span>
+#include <type_traits>
+
+#include "frame/check.h"
+
+namespace eigenlight {
+
+/// Size of an image in pixels. Valid images have both sides in [1, 65536].
+struct Extent {
+  int width = 0;
+  int height = 0;
+
+  [[nodiscard]] std::size_t pixels() const {
+    return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  }
+  [[nodiscard]] bool contains(int x, int y) const {
+    return x >= 0 && y >= 0 && x < width && y < height;
+  }
+  friend bool operator==(const Extent&, const Extent&) = default;
+};
+
+inline constexpr int kMaxSide = 65536;
+
+/// Throws std::invalid_argument unless both sides of `extent` are in [1, kMaxSide].
+inline void check_extent(Extent extent) {
+  EL_CHECK(extent.width >= 1 && extent.height >= 1 && extent.width <= kMaxSide &&
+               extent.height <= kMaxSide,
+           "image size {}x{}: each side must be in [1, {}]", extent.width, extent.height, kMaxSide);
+}
+
+/// A 2-D array of trivially copyable values, zero-initialised.
+///
+/// Rows start on 64-byte lines and are padded to whole lines, so that vector kernels may read (and,
+/// in rows they own, write) up to the padded width without a tail loop; padding is never read as
+/// data. Moves are cheap, copies are explicit: clone() allocates, copy_from() does not.
+template <typename T>
+class Plane {
+  static_assert(std::is_trivially_copyable_v<T>);
+
+ public:
+  static constexpr std::size_t kLine = 64;  ///< bytes: one cache line, one AVX-512 vector
+
+  Plane() = default;
+  /// `channels` values stand side by side at each pixel. Throws std::invalid_argument on a bad
+  /// size.
+  explicit Plane(Extent extent, int channels = 1) : extent_(extent), channels_(channels) {
+    check_extent(extent);
+    EL_CHECK(channels >= 1 && channels <= 64, "a pixel holds 1 to 64 values, not {}", channels);
+    const std::size_t row =
+        static_cast<std::size_t>(extent.width) * static_cast<std::size_t>(channels) * sizeof(T);
+    stride_ = (row + kLine - 1) / kLine * kLine / sizeof(T);
+    const std::size_t count = stride_ * static_cast<std::size_t>(extent.height);
+    data_.reset(static_cast<T*>(::operator new (count * sizeof(T), std::align_val_t{kLine})));
+    std::memset(static_cast<void*>(data_.get()), 0, count * sizeof(T));
+  }
+
+  [[nodiscard]] Extent extent() const { return extent_; }
+  [[nodiscard]] int width() const { return extent_.width; }
+  [[nodiscard]] int height() const { return extent_.height; }
+  [[nodiscard]] int channels() const { return channels_; }
+  [[nodiscard]] bool empty() const { return !data_; }
+  /// Values from the start of one row to the start of the next.
+  [[nodiscard]] std::size_t stride() const { return stride_; }
+
+  [[nodiscard]] T* row(int y) {
+    EL_DCHECK(y >= 0 && y < extent_.height);
+    return data_.get() + stride_ * static_cast<std::size_t>(y);
+  }
+  [[nodiscard]] const T* row(int y) const {
+    EL_DCHECK(y >= 0 && y < extent_.height);
+    return data_.get() + stride_ * static_cast<std::size_t>(y);
+  }
+  /// First value of pixel (x, y).
+  [[nodiscard]] T* at(int x, int y) { return row(y) + x * channels_; }
+  [[nodiscard]] const T* at(int x, int y) const { return row(y) + x * channels_; }
+  [[nodiscard]] T& operator()(int x, int y) { return *at(x, y); }
+  [[nodiscard]] const T& operator()(int x, int y) const { return *at(x, y); }
+
+  /// The whole storage, padding included.
+  [[nodiscard]] std::span<T> storage() { return {data_.get(), storage_size()}; }
+  [[nodiscard]] std::span<const T> storage() const { return {data_.get(), storage_size()}; }
+
+  void fill(T value) { std::fill_n(data_.get(), storage_size(), value); }
+  [[nodiscard]] Plane clone() const {
+    Plane copy;
+    if (!empty()) {
+      copy = Plane(extent_, channels_);
+      copy.copy_from(*this);
+    }
+    return copy;
+  }
+  /// Copies the values of a plane of the same shape. Throws std::invalid_argument on another shape.
+  void copy_from(const Plane& other) {
+    EL_CHECK(extent_ == other.extent_ && channels_ == other.channels_,
+             "planes differ in shape: {}x{}x{} and {}x{}x{}", extent_.width, extent_.height,
+             channels_, other.extent_.width, other.extent_.height, other.channels_);
+    if (!empty()) {
+      std::memcpy(static_cast<void*>(data_.get()), other.data_.get(), storage_size() * sizeof(T));
+    }
+  }
+
+ private:
+  struct Free {
+    void operator()(T* p) const { ::operator delete (p, std::align_val_t{kLine}); }
+  };
+
+  [[nodiscard]] std::size_t storage_size() const {
+    return empty() ? 0 : stride_ * static_cast<std::size_t>(extent_.height);
+  }
+
+  Extent extent_;
+  int channels_ = 1;
+  std::size_t stride_ = 0;
+  std::unique_ptr<T[], Free> data_;
+};
+
+/// N planes of floats, one per channel (red, green, blue or x, y, z).
+template <int N>
+using Planes = std::array<Plane<float>, N>;
+
+template <int N>
+[[nodiscard]] Planes<N> make_planes(Extent extent) {
+  Planes<N> planes;
+  for (auto& plane : planes) plane = Plane<float>(extent);
+  return planes;
+}
+
+/// Gives `plane` the shape `extent`, keeping its storage (and values) when it already has it.
+template <typename T>
+void ensure_extent(Plane<T>& plane, Extent extent, int channels = 1) {
+  if (plane.empty() || plane.extent() != extent || plane.channels() != channels) {
+    plane = Plane<T>(extent, channels);
+  }
+}
+
+template <int N>
+void ensure_extent(Planes<N>& planes, Extent extent) {
+  for (auto& plane : planes) ensure_extent(plane, extent);
+}
+
+template <std::size_t N>
+void copy_planes(const std::array<Plane<float>, N>& from, std::array<Plane<float>, N>& to) {
+  for (std::size_t c = 0; c < N; ++c) to[c].copy_from(from[c]);
+}
+
+}  // namespace eigenlight

@@ -1,0 +1,56 @@
+// The fixed tile grid and the one parallel loop. tiles.cpp is the only file that includes TBB.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+#include "frame/plane.h"
+
+namespace eigenlight {
+
+/// Pixels [x0, x1) x [y0, y1) of an image.
+struct Tile {
+  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+  int index = 0;  ///< in row order over the grid
+
+  [[nodiscard]] int pixels() const { return (x1 - x0) * (y1 - y0); }
+};
+
+/// A grid that depends on the extent and the tile size alone, never on the number of threads: sums
+/// kept per tile and added in index order have the same bits however many threads there are.
+class TileGrid {
+ public:
+  /// Throws std::invalid_argument on an empty extent or a tile side below 1.
+  TileGrid(Extent extent, int tile_width, int tile_height);
+
+  [[nodiscard]] Extent extent() const { return extent_; }
+  [[nodiscard]] int columns() const { return columns_; }
+  [[nodiscard]] int rows() const { return rows_; }
+  [[nodiscard]] int count() const { return columns_ * rows_; }
+  [[nodiscard]] int tile_width() const { return tile_width_; }
+  [[nodiscard]] int tile_height() const { return tile_height_; }
+  [[nodiscard]] Tile tile(int index) const;
+
+ private:
+  Extent extent_;
+  int tile_width_, tile_height_;
+  int columns_, rows_;
+};
+
+/// Tiles for stages that have no tile size of their own: 64 pixels are whole cache lines of every
+/// type, 16 rows keep a tile of five RGB bases (60 kB) within the second-level cache.
+[[nodiscard]] inline TileGrid stage_tiles(Extent extent) { return {extent, 64, 16}; }
+
+/// Calls body(i) once for each i in [0, count), in any order and on any thread. An exception thrown
+/// by the body is rethrown here.
+void parallel_for(int count, const std::function<void(int)>& body);
+
+/// Calls body(tile) once for each tile of the grid, in any order and on any thread.
+void for_each_tile(const TileGrid& grid, const std::function<void(const Tile&)>& body);
+
+/// Threads that the loops above use, at least 1. 0 asks for one per core. Not to be called while a
+/// loop runs.
+void set_thread_count(int threads);
+[[nodiscard]] int thread_count();
+
+}  // namespace eigenlight

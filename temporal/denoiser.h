@@ -1,0 +1,92 @@
+// The face of every method that turns noisy frames into steady ones.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "frame/frame.h"
+#include "frame/state.h"
+
+namespace eigenlight {
+
+/// The steps of the frame loop, in their order. A method reports those that it has.
+enum class Stage { kSource, kReproject, kBudget, kResample, kProject, kUpdate, kFilter, kCount };
+inline constexpr std::array<std::string_view, static_cast<std::size_t>(Stage::kCount)> kStageNames{
+    "source", "reproject", "budget", "resample", "project", "update", "filter"};
+
+struct StageTime {
+  double wall_ms = 0.0;
+  double cpu_ms = 0.0;  ///< of the whole process
+};
+
+/// What happened in one frame; one line of frames.jsonl.
+struct FrameReport {
+  int frame = 0;
+  bool cut = false;  ///< no history was taken over
+  std::array<StageTime, static_cast<std::size_t>(Stage::kCount)> time{};
+  std::int64_t rays = 0;  ///< of indirect and direct light and guide rays
+  std::int64_t surface_pixels = 0;
+  std::int64_t new_pixels = 0;          ///< surface pixels without history
+  std::int64_t extra_samples = 0;       ///< granted by the budget
+  std::int64_t non_finite_pixels = 0;   ///< raw pixels with NaN or Inf: excluded
+  std::int64_t non_finite_samples = 0;  ///< excluded by the source itself
+  double mean_rank = 0.0;               ///< bases in use per tile with surface
+  /// What was skipped, in pixels.
+  std::int64_t skipped_warp = 0;     ///< still: no taps, no copy
+  std::int64_t skipped_surface = 0;  ///< pixels in tiles without any surface
+  std::int64_t skipped_filter = 0;   ///< pixels already quiet enough for the spatial passes
+  std::int64_t skipped_guided = 0;   ///< pixels in tiles without young pixels
+
+  [[nodiscard]] StageTime& operator[](Stage stage) { return time[static_cast<std::size_t>(stage)]; }
+  [[nodiscard]] const StageTime& operator[](Stage stage) const {
+    return time[static_cast<std::size_t>(stage)];
+  }
+};
+
+class Denoiser {
+ public:
+  virtual ~Denoiser() = default;
+
+  /// Pulls one frame from `source` and denoises it: indirect radiance over albedo, linear. Null at
+  /// the end of the sequence, else valid until the next call. Pixels without surface are 0.
+  /// Throws std::invalid_argument if the frame has another size than the denoiser.
+  [[nodiscard]] virtual const Planes<3>* step(FrameSource& source) = 0;
+
+  [[nodiscard]] virtual const Frame& frame() const = 0;         ///< the one that step() pulled last
+  [[nodiscard]] virtual const FrameReport& report() const = 0;  ///< of the last step()
+  /// Frames' worth of samples behind each pixel; 0 without surface.
+  [[nodiscard]] virtual const Plane<float>& age() const = 0;
+
+  virtual void reset() = 0;  ///< forgets all history, as at a cut
+
+  /// History between two frames. After load() the next step() gives the same bits as if the process
+  /// had never ended. load() throws std::runtime_error on data that is not such a state.
+  virtual void save(StateWriter& out) const = 0;
+  virtual void load(StateReader& in) = 0;
+};
+
+struct DenoiserOptions {
+  Extent extent;
+  int bases = 3;  ///< [1, 8] K, for methods that have bases
+};
+
+/// A method as a user names it.
+struct Method {
+  std::string_view name;
+  std::string_view what;   ///< one line
+  std::string_view paper;  ///< authors and year, or empty
+  std::unique_ptr<Denoiser> (*make)(const DenoiserOptions&);
+};
+
+/// All methods, in the order they are listed. `reference` is not among them: it is a way to render.
+[[nodiscard]] const std::vector<Method>& methods();
+
+/// Throws std::invalid_argument listing the known methods if `name` is none, or naming a bad
+/// option.
+[[nodiscard]] std::unique_ptr<Denoiser> make_denoiser(std::string_view name,
+                                                      const DenoiserOptions& options);
+
+}  // namespace eigenlight
