@@ -124,10 +124,10 @@ class Plane {
 };
 
 /// N planes of floats, one per channel (red, green, blue or x, y, z).
-template <int N>
+template <std::size_t N>
 using Planes = std::array<Plane<float>, N>;
 
-template <int N>
+template <std::size_t N>
 [[nodiscard]] Planes<N> make_planes(Extent extent) {
   Planes<N> planes;
   for (auto& plane : planes) plane = Plane<float>(extent);
@@ -142,7 +142,7 @@ void ensure_extent(Plane<T>& plane, Extent extent, int channels = 1) {
   }
 }
 
-template <int N>
+template <std::size_t N>
 void ensure_extent(Planes<N>& planes, Extent extent) {
   for (auto& plane : planes) ensure_extent(plane, extent);
 }

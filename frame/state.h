@@ -30,7 +30,7 @@ class StateWriter {
     const std::size_t row = row_bytes(plane);
     for (int y = 0; y < plane.height(); ++y) raw(plane.row(y), row);
   }
-  template <int N>
+  template <std::size_t N>
   void planes(std::string_view name, const Planes<N>& planes) {
     for (const auto& p : planes) plane(name, p);
   }
@@ -72,7 +72,7 @@ class StateReader {
     const std::size_t row = static_cast<std::size_t>(shape[0]) * static_cast<std::size_t>(shape[2]);
     for (int y = 0; y < shape[1]; ++y) raw(name, plane.row(y), row * sizeof(T));
   }
-  template <int N>
+  template <std::size_t N>
   void planes(std::string_view name, Planes<N>& planes) {
     for (auto& p : planes) plane(name, p);
   }

@@ -1,0 +1,61 @@
+#include "reproject/warp.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "reproject/warp_simd.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace eigenlight::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// A pixel is a whole number of groups of four floats, so four lanes always fit.
+void WarpBases(const BasisField& from, const TapSegment& taps, const Tile& row, BasisField& to) {
+  const hn::FixedTag<float, 4> d;
+  const int floats = from.pixel_floats();
+  const std::size_t stride = from.data().stride();
+  const float* base = from.data().row(0);
+  float* out = to.pixel(row.x0, row.y0);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(row.x1 - row.x0); ++i, out += floats) {
+    const auto pixel = [&](std::size_t t) {
+      return base + stride * static_cast<std::size_t>(taps.y[t][i]) + taps.x[t][i] * floats;
+    };
+    const float* const p[4] = {pixel(0), pixel(1), pixel(2), pixel(3)};
+    const auto w0 = hn::Set(d, taps.weight[0][i]), w1 = hn::Set(d, taps.weight[1][i]);
+    const auto w2 = hn::Set(d, taps.weight[2][i]), w3 = hn::Set(d, taps.weight[3][i]);
+    for (int j = 0; j < floats; j += 4) {
+      const auto upper = hn::MulAdd(w0, hn::Load(d, p[0] + j), hn::Mul(w1, hn::Load(d, p[1] + j)));
+      const auto lower = hn::MulAdd(w2, hn::Load(d, p[2] + j), hn::Mul(w3, hn::Load(d, p[3] + j)));
+      hn::Store(hn::Add(upper, lower), d, out + j);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace eigenlight::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace eigenlight {
+
+HWY_EXPORT(WarpBases);
+
+void warp_bases(const BasisField& from, const TapSegment& taps, const Tile& row, BasisField& to) {
+  EL_DCHECK(from.bases() == to.bases() && row.x1 - row.x0 <= kSegment);
+  HWY_DYNAMIC_DISPATCH(WarpBases)(from, taps, row, to);
+}
+
+void warp_plane(const Plane<float>& from, const TapSegment& taps, const Tile& row,
+                Plane<float>& to) {
+  float* out = to.at(row.x0, row.y0);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(row.x1 - row.x0); ++i) {
+    float sum = 0.0f;
+    for (std::size_t t = 0; t < 4; ++t) sum += taps.weight[t][i] * from(taps.x[t][i], taps.y[t][i]);
+    out[i] = sum;
+  }
+}
+
+}  // namespace eigenlight
+#endif
