@@ -11,9 +11,10 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// A pixel is a whole number of groups of four floats, so four lanes always fit.
+// A pixel is a whole number of groups of four floats, so up to four lanes always fit.
 void WarpBases(const BasisField& from, const TapSegment& taps, const Tile& row, BasisField& to) {
-  const hn::FixedTag<float, 4> d;
+  const hn::CappedTag<float, 4> d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
   const int floats = from.pixel_floats();
   const std::size_t stride = from.data().stride();
   const float* base = from.data().row(0);
@@ -25,7 +26,7 @@ void WarpBases(const BasisField& from, const TapSegment& taps, const Tile& row, 
     const float* const p[4] = {pixel(0), pixel(1), pixel(2), pixel(3)};
     const auto w0 = hn::Set(d, taps.weight[0][i]), w1 = hn::Set(d, taps.weight[1][i]);
     const auto w2 = hn::Set(d, taps.weight[2][i]), w3 = hn::Set(d, taps.weight[3][i]);
-    for (int j = 0; j < floats; j += 4) {
+    for (int j = 0; j < floats; j += lanes) {
       const auto upper = hn::MulAdd(w0, hn::Load(d, p[0] + j), hn::Mul(w1, hn::Load(d, p[1] + j)));
       const auto lower = hn::MulAdd(w2, hn::Load(d, p[2] + j), hn::Mul(w3, hn::Load(d, p[3] + j)));
       hn::Store(hn::Add(upper, lower), d, out + j);
