@@ -1,0 +1,93 @@
+// OpenEXR files, in and out. exr_io.cpp is the only file here that includes OpenImageIO for EXR.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "frame/plane.h"
+
+namespace eigenlight {
+
+enum class ExrType { kHalf, kFloat, kUint };
+
+/// One channel to write: a view of a plane of floats (half or float in the file) or of integers
+/// (kUint).
+struct ExrChannel {
+  std::string name;  ///< `R`, `albedo.G`
+  ExrType type = ExrType::kHalf;
+  std::variant<const Plane<float>*, const Plane<std::uint32_t>*> pixels;
+};
+
+/// Row vectors: p' = p M, translation in the last row, as OpenEXR has it.
+using ExrMatrix = std::array<float, 16>;
+
+struct ExrAttribute {
+  std::string name;
+  std::variant<int, float, std::string, ExrMatrix> value;
+};
+
+/// Writes a scanline file, ZIP compressed, in one step (write_file_atomically). NaN and Inf are
+/// written as they are; a finite value beyond 65504 becomes Inf in a half channel, so choose kFloat
+/// for such a layer. Throws std::invalid_argument unless all planes have one extent,
+/// std::runtime_error naming the file if it cannot be written. Same input, same bytes.
+void write_exr(const std::filesystem::path& path, std::span<const ExrChannel> channels,
+               std::span<const ExrAttribute> attributes);
+
+/// Reads layers of any OpenEXR file: scanlines or tiles, one part or many. A layer is what stands
+/// before the last dot of a channel name: `albedo.R` is of `albedo`; bare `R`, `G`, `B`, `A` are of
+/// the layer "", other bare names (`Z`, `id`) are layers of their own. In a file of several parts
+/// the part's name comes first unless the channel names repeat it.
+///
+/// Layers may also be asked for by our names where another renderer wrote the file: `color`,
+/// `albedo`, `N`, `Z`, `P`, `motion`, `direct`, `indirect` find what Cycles, Arnold, RenderMan and
+/// pbrt call them (exr_layers.h). Names only: units, axes and signs stay the file's.
+class ExrReader {
+ public:
+  /// Opens `path` and reads its headers. Throws std::runtime_error naming the file.
+  explicit ExrReader(const std::filesystem::path& path);
+  ~ExrReader();
+  ExrReader(ExrReader&&) noexcept;
+  ExrReader& operator=(ExrReader&&) noexcept;
+
+  [[nodiscard]] Extent extent() const;                             ///< the display window
+  [[nodiscard]] const std::vector<std::string>& channels() const;  ///< full names, in file order
+  [[nodiscard]] const std::vector<std::string>& layers() const;
+  [[nodiscard]] bool has_layer(std::string_view layer) const;
+
+  /// All channels of a layer, R G B A or X Y Z W first and in that order. Pixels of the display
+  /// window outside the data window are 0. Throws std::runtime_error naming file and layer if the
+  /// layer is missing or cannot be decoded.
+  [[nodiscard]] std::vector<Plane<float>> read(std::string_view layer) const;
+  /// The same, for a layer that must have at least N channels; further ones are left out.
+  template <int N>
+  [[nodiscard]] Planes<N> read_planes(std::string_view layer) const {
+    std::vector<Plane<float>> found = read(layer);
+    check_channels(layer, found.size(), N);
+    Planes<N> planes;
+    for (std::size_t c = 0; c < N; ++c) planes[c] = std::move(found[c]);
+    return planes;
+  }
+  /// A layer of one integer channel, exactly. Throws if its channel is not of type uint.
+  [[nodiscard]] Plane<std::uint32_t> read_uint(std::string_view layer) const;
+
+  /// An attribute of the first part's header.
+  [[nodiscard]] std::optional<std::variant<int, float, std::string, ExrMatrix>> attribute(
+      const std::string& name) const;
+
+ private:
+  struct State;
+  void check_channels(std::string_view layer, std::size_t found, std::size_t wanted) const;
+
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace eigenlight
