@@ -1,0 +1,24 @@
+// 8-bit pictures: PNG and JPEG, through OpenImageIO.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "frame/plane.h"
+
+namespace eigenlight {
+
+/// True for a file name that ends as an 8-bit picture does (png, jpg, jpeg; any case): its values
+/// are display values, not radiance.
+[[nodiscard]] bool is_ldr_name(const std::filesystem::path& path);
+
+/// Red, green and blue in [0, 1] as stored, without any curve undone; gray is repeated, alpha left
+/// out. Throws std::runtime_error naming the file.
+[[nodiscard]] Planes<3> read_ldr_image(const std::filesystem::path& path);
+
+/// A picture of 3 bytes a pixel (channels() == 3) as a JPEG file in memory. `quality` in [1, 100].
+/// Throws std::runtime_error if the encoder fails.
+[[nodiscard]] std::vector<unsigned char> encode_jpeg(const Plane<std::uint8_t>& rgb, int quality);
+
+}  // namespace eigenlight
