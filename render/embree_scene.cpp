@@ -3,7 +3,7 @@
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <glm/gtc/type_ptr.hpp>
 #include <map>
@@ -38,6 +38,18 @@ struct MeshLook {
   const Material* material = nullptr;
   const Texture* texture = nullptr;
 };
+
+// What follows from an instance's transform.
+struct Placement {
+  glm::mat3 normal_matrix{1.0f};
+  float area_scale = 1.0f;
+};
+
+Placement placement_of(const glm::mat4& to_world) {
+  const glm::mat3 linear(to_world);
+  return {glm::transpose(glm::inverse(linear)),
+          std::pow(std::abs(glm::determinant(linear)), 2.0f / 3.0f)};
+}
 
 struct GlassContext {
   RTCIntersectContext embree;
@@ -114,7 +126,7 @@ struct EmbreeScene::Impl {
   std::vector<SceneHandle> mesh_scenes;     // per mesh, where it is instanced
   std::vector<Geometry> instance_geometry;  // per instance; null where merged into its group
   std::vector<glm::mat4> transforms;
-  std::vector<glm::mat3> normal_matrices;
+  std::vector<Placement> placements;
   Group still, moving, glass;
 };
 
@@ -198,7 +210,7 @@ Geometry EmbreeScene::Impl::make_instance(int mesh, const glm::mat4& transform, 
 void EmbreeScene::Impl::attach(std::size_t instance, std::size_t uses) {
   const Instance& placed = scene->instances[instance];
   transforms.push_back(placed.to_world);
-  normal_matrices.push_back(glm::transpose(glm::inverse(glm::mat3(placed.to_world))));
+  placements.push_back(placement_of(placed.to_world));
   instance_geometry.emplace_back();
   if (scene->meshes[index(placed.mesh)].triangles.empty()) return;
   const bool moves = instance >= first_moving;
@@ -223,7 +235,7 @@ void EmbreeScene::Impl::commit(Group& group) {
 
 void EmbreeScene::Impl::set_transform(std::size_t instance, const glm::mat4& transform) {
   transforms[instance] = transform;
-  normal_matrices[instance] = glm::transpose(glm::inverse(glm::mat3(transform)));
+  placements[instance] = placement_of(transform);
   const Geometry& geometry = instance_geometry[instance];
   if (!geometry) return;  // a mesh without triangles
   rtcSetGeometryTransform(geometry.get(), 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR,
@@ -284,7 +296,9 @@ std::optional<Hit> EmbreeScene::intersect(const Ray& ray) const {
   if (!impl_->moving.empty()) impl_->intersect(impl_->moving, r, instance);
   if (r.hit.primID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
   glm::vec3 normal(r.hit.Ng_x, r.hit.Ng_y, r.hit.Ng_z);
-  if (impl_->instance_geometry[instance]) normal = impl_->normal_matrices[instance] * normal;
+  if (impl_->instance_geometry[instance]) {
+    normal = impl_->placements[instance].normal_matrix * normal;
+  }
   return Hit{r.ray.tfar, r.hit.u, r.hit.v, instance, r.hit.primID, glm::normalize(normal)};
 }
 
@@ -310,5 +324,13 @@ glm::vec3 EmbreeScene::glass_tint(const Ray& ray) const {
 bool EmbreeScene::has_glass() const { return !impl_->glass.empty(); }
 
 std::span<const glm::mat4> EmbreeScene::transforms() const { return impl_->transforms; }
+
+const glm::mat3& EmbreeScene::normal_matrix(std::uint32_t instance) const {
+  return impl_->placements[instance].normal_matrix;
+}
+
+float EmbreeScene::area_scale(std::uint32_t instance) const {
+  return impl_->placements[instance].area_scale;
+}
 
 }  // namespace eigenlight

@@ -58,6 +58,10 @@ class EmbreeScene {
 
   /// Current world transforms of all instances.
   [[nodiscard]] std::span<const glm::mat4> transforms() const;
+  /// Inverse transpose of an instance's transform: takes its normals to the world (not unit).
+  [[nodiscard]] const glm::mat3& normal_matrix(std::uint32_t instance) const;
+  /// How much an instance's transform enlarges areas: exact for uniform scales, a mean for others.
+  [[nodiscard]] float area_scale(std::uint32_t instance) const;
 
  private:
   struct Impl;

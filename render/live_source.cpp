@@ -1,0 +1,241 @@
+#include "render/live_source.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "frame/check.h"
+#include "frame/random.h"
+#include "frame/tiles.h"
+#include "render/embree_scene.h"
+#include "render/gbuffer.h"
+#include "render/light_set.h"
+#include "render/path_tracer.h"
+#include "render/sampler.h"
+#include "render/surface.h"
+
+namespace eigenlight {
+namespace {
+
+// Small enough to share the work of a small image among many cores, large enough for neighboring
+// rays to share cache lines.
+constexpr int kTileSide = 16;
+
+// Sequences of the two layers are independent of each other.
+constexpr std::uint32_t kIndirectStream = 0;
+constexpr std::uint32_t kDirectStream = 1;
+
+struct Counters {
+  std::int64_t rays = 0;
+  std::int64_t non_finite = 0;
+};
+
+// Mean of the finite samples. NaN if there are samples but none is finite: the pixel knows nothing,
+// and black would claim that it does.
+class FiniteMean {
+ public:
+  void add(const glm::vec3& sample, Counters& counters) {
+    if (std::isfinite(sample.x) && std::isfinite(sample.y) && std::isfinite(sample.z)) {
+      sum_ += sample;
+      ++count_;
+    } else {
+      ++counters.non_finite;
+    }
+  }
+  [[nodiscard]] glm::vec3 value() const {
+    if (count_ == 0) return glm::vec3(std::numeric_limits<float>::quiet_NaN());
+    return sum_ / static_cast<double>(count_);
+  }
+
+ private:
+  glm::dvec3 sum_{0.0};
+  int count_ = 0;
+};
+
+void store(const glm::vec3& value, int x, int y, Planes<3>& planes) {
+  for (int c = 0; c < 3; ++c) planes[static_cast<std::size_t>(c)](x, y) = value[c];
+}
+
+bool same_place(const AreaRect& a, const AreaRect& b) {
+  return a.center == b.center && a.half_u == b.half_u && a.half_v == b.half_v;
+}
+bool same_place(const SphereLight& a, const SphereLight& b) {
+  return a.center == b.center && a.radius == b.radius;
+}
+
+bool same_places(const Lights& a, const Lights& b) {
+  const auto same = [](const auto& p, const auto& q) { return same_place(p, q); };
+  return std::equal(a.rects.begin(), a.rects.end(), b.rects.begin(), b.rects.end(), same) &&
+         std::equal(a.spheres.begin(), a.spheres.end(), b.spheres.begin(), b.spheres.end(), same);
+}
+
+}  // namespace
+
+void RenderOptions::validate() const {
+  check_extent(extent);
+  EL_CHECK(spp >= 1 && spp <= 65536, "spp {}: expected 1 to 65536", spp);
+  EL_CHECK(direct_spp >= 1 && direct_spp <= 65536, "direct_spp {}: expected 1 to 65536",
+           direct_spp);
+  EL_CHECK(bounces >= 1 && bounces <= 64, "bounces {}: expected 1 to 64", bounces);
+}
+
+struct LiveSource::State {
+  State(const Scene& scene, const Animation& anim, const RenderOptions& opts, std::size_t moving)
+      : animation(&anim),
+        options(opts),
+        geometry(scene, moving),
+        surfaces(scene, geometry),
+        lights(scene, geometry),
+        tracer({geometry, surfaces, lights}, opts.bounces),
+        grid(opts.extent, kTileSide, kTileSide),
+        hits(opts.extent),
+        drawn(opts.extent),
+        counters(static_cast<std::size_t>(grid.count())) {}
+
+  void pose(Frame& frame);
+  void render(const Tile& tile, Frame& frame);
+  void light(glm::ivec2 at, Frame& frame, Counters& tally);
+  [[nodiscard]] glm::vec3 draw(glm::ivec2 at, std::uint32_t count, const Frame& frame,
+                               Counters& tally);
+  void add_counters(Frame& frame) const;
+  [[nodiscard]] std::uint32_t key(glm::ivec2 at, std::uint32_t stream, int frame) const {
+    return hash_key(options.seed, frame, at.x, at.y, stream);
+  }
+
+  const Animation* animation;
+  RenderOptions options;
+  std::vector<int> frames;
+  std::size_t position = 0;  // in `frames`, of the next one
+  EmbreeScene geometry;
+  SurfaceTable surfaces;
+  LightSet lights;
+  PathTracer tracer;
+  TileGrid grid;
+  PreviousView previous;
+  std::vector<glm::mat4> previous_poses;  // of all instances
+  Plane<GuideHit> hits;                   // of the frame that was delivered last
+  Plane<std::uint32_t> drawn;             // indirect samples of each pixel of that frame
+  std::vector<Counters> counters;         // per tile
+};
+
+// Camera, poses and lights of `frame.index` and of the frame before it.
+void LiveSource::State::pose(Frame& frame) {
+  const SceneState now = animation->state(frame.index);
+  // Before frame 0 there is nothing: motion leads to the same view, but it does not count as still.
+  const SceneState then = frame.previous_index < 0 ? now : animation->state(frame.previous_index);
+  EL_CHECK(then.poses.size() == now.poses.size(),
+           "frame {}: {} poses, frame {}: {}; expected one count", frame.index, now.poses.size(),
+           frame.previous_index, then.poses.size());
+  geometry.set_poses(now.poses);
+  lights.update(now.lights);
+  frame.camera = now.camera;
+  frame.is_static = frame.previous_index >= 0 && now.camera == then.camera &&
+                    now.poses == then.poses && same_places(now.lights, then.lights);
+  const auto current = geometry.transforms();
+  previous_poses.assign(current.begin(), current.end());
+  std::copy(then.poses.begin(), then.poses.end(),
+            previous_poses.end() - static_cast<std::ptrdiff_t>(then.poses.size()));
+  previous = {then.camera, then.lights, previous_poses};
+}
+
+// `count` further samples of indirect light.
+glm::vec3 LiveSource::State::draw(glm::ivec2 at, std::uint32_t count, const Frame& frame,
+                                  Counters& tally) {
+  const std::uint32_t k = key(at, kIndirectStream, frame.index);
+  std::uint32_t& next = drawn(at.x, at.y);
+  FiniteMean mean;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    Sampler sampler(k, next++);
+    mean.add(tracer.indirect(hits(at.x, at.y).point, sampler, tally.rays), tally);
+  }
+  return mean.value();
+}
+
+void LiveSource::State::light(glm::ivec2 at, Frame& frame, Counters& tally) {
+  glm::vec3 indirect(0.0f), direct(0.0f);
+  drawn(at.x, at.y) = 0;
+  const GuideHit& guide = hits(at.x, at.y);
+  if (guide.kind == GuideHit::Kind::kSurface) {
+    indirect = draw(at, static_cast<std::uint32_t>(options.spp), frame, tally);
+    const std::uint32_t k = key(at, kDirectStream, frame.index);
+    FiniteMean mean;
+    for (int i = 0; i < options.direct_spp; ++i) {
+      Sampler sampler(k, static_cast<std::uint32_t>(i));
+      mean.add(tracer.direct(guide.point, sampler, tally.rays), tally);
+    }
+    direct = mean.value();
+  }
+  store(indirect, at.x, at.y, frame.indirect);
+  store(direct, at.x, at.y, frame.direct);
+}
+
+void LiveSource::State::render(const Tile& tile, Frame& frame) {
+  Counters tally;
+  tally.rays = trace_guides({geometry, surfaces, lights}, previous, tile, frame, hits);
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    for (int x = tile.x0; x < tile.x1; ++x) light({x, y}, frame, tally);
+  }
+  counters[static_cast<std::size_t>(tile.index)] = tally;
+}
+
+void LiveSource::State::add_counters(Frame& frame) const {
+  for (const Counters& tally : counters) {
+    frame.rays += tally.rays;
+    frame.non_finite_samples += tally.non_finite;
+  }
+}
+
+LiveSource::LiveSource(const Scene& scene, const Animation& animation, const RenderOptions& options,
+                       std::vector<int> frames, std::size_t first) {
+  options.validate();
+  EL_CHECK(first <= frames.size(), "first frame {}: the list has {}", first, frames.size());
+  for (const int frame : frames) EL_CHECK(frame >= 0, "frame {}: expected 0 or more", frame);
+  const int any = frames.empty() ? 0 : frames.front();
+  state_ = std::make_unique<State>(scene, animation, options, animation.state(any).poses.size());
+  state_->frames = std::move(frames);
+  state_->position = first;
+}
+
+LiveSource::~LiveSource() = default;
+
+bool LiveSource::next(Frame& frame) {
+  State& s = *state_;
+  if (s.position == s.frames.size()) return false;
+  frame.resize(s.options.extent);
+  frame.index = s.frames[s.position];
+  frame.previous_index = s.position > 0 ? s.frames[s.position - 1] : frame.index - 1;
+  frame.spp = s.options.spp;
+  frame.rays = 0;
+  frame.non_finite_samples = 0;
+  s.pose(frame);
+  for_each_tile(s.grid, [&](const Tile& tile) { s.render(tile, frame); });
+  s.add_counters(frame);
+  ++s.position;
+  return true;
+}
+
+bool LiveSource::resample(const Plane<std::uint8_t>& extra, Frame& frame, Planes<3>& mean) {
+  State& s = *state_;
+  EL_CHECK(s.position > 0 && frame.index == s.frames[s.position - 1],
+           "resample: frame {} is not the one that was delivered last", frame.index);
+  EL_CHECK(extra.extent() == s.options.extent && frame.extent() == s.options.extent,
+           "resample: {}x{} extra samples for {}x{} pixels", extra.width(), extra.height(),
+           s.options.extent.width, s.options.extent.height);
+  ensure_extent(mean, s.options.extent);
+  for_each_tile(s.grid, [&](const Tile& tile) {
+    Counters tally;
+    for (int y = tile.y0; y < tile.y1; ++y) {
+      for (int x = tile.x0; x < tile.x1; ++x) {
+        const bool lit = extra(x, y) > 0 && s.hits(x, y).kind == GuideHit::Kind::kSurface;
+        store(lit ? s.draw({x, y}, extra(x, y), frame, tally) : glm::vec3(0.0f), x, y, mean);
+      }
+    }
+    s.counters[static_cast<std::size_t>(tile.index)] = tally;
+  });
+  s.add_counters(frame);
+  return true;
+}
+
+}  // namespace eigenlight

@@ -1,0 +1,136 @@
+#include "render/path_tracer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+namespace eigenlight {
+namespace {
+
+constexpr float kPi = std::numbers::pi_v<float>;
+
+// Shadow rays end this fraction short of the light, so as not to meet it: far above the rounding of
+// a distance, far below any gap that matters.
+constexpr float kShort = 1e-4f;
+
+glm::vec3 ray_origin(const SurfacePoint& point) {
+  return point.position + point.offset * point.geometric;
+}
+
+}  // namespace
+
+// A cosine-distributed ray and what it met.
+struct PathTracer::Bounce {
+  Ray ray;
+  float pdf = 0.0f;  // per steradian
+  glm::vec3 tint{1.0f};
+  std::optional<Hit> hit;
+  std::optional<ShapeHit> shape;  // then there is no hit
+};
+
+// False where the direction is under the surface: an interpolated normal leans over that far. Such
+// rays carry nothing, whichever way they are chosen.
+bool PathTracer::sample_ray(const SurfacePoint& point, Sampler& sampler, Bounce& bounce) const {
+  const glm::vec2 u = sampler.next_2d();
+  const float radius = std::sqrt(u.x);
+  const float phi = 2.0f * kPi * u.y;
+  const float height = std::sqrt(1.0f - u.x);
+  const glm::vec3 local(radius * std::cos(phi), radius * std::sin(phi), height);
+  bounce.ray = {ray_origin(point), around(point.normal, local)};
+  bounce.pdf = height / kPi;
+  return glm::dot(bounce.ray.direction, point.geometric) > 0.0f && bounce.pdf > 0.0f;
+}
+
+void PathTracer::trace(Bounce& bounce, std::int64_t& rays) const {
+  ++rays;
+  bounce.hit = world_.geometry.intersect(bounce.ray);
+  Ray rest = bounce.ray;
+  if (bounce.hit) rest.t_max = bounce.hit->t;
+  bounce.shape = world_.lights.intersect(rest);
+  if (bounce.shape) {
+    bounce.hit.reset();
+    rest.t_max = bounce.shape->t;
+  }
+  bounce.tint = world_.geometry.glass_tint(rest);
+}
+
+// Radiance that lights emit against the ray, times the weight against aiming at them.
+glm::vec3 PathTracer::seen(const Bounce& bounce) const {
+  const LightSet& lights = world_.lights;
+  if (bounce.shape) {
+    return power_heuristic(bounce.pdf, lights.pdf(bounce.ray, *bounce.shape)) *
+           bounce.shape->radiance;
+  }
+  if (!bounce.hit) return lights.escaped(bounce.ray.origin, bounce.ray.direction, bounce.pdf);
+  const glm::vec3& emission = world_.surfaces.emission(*bounce.hit);
+  if (emission == glm::vec3(0.0f)) return emission;
+  return power_heuristic(bounce.pdf, lights.pdf(bounce.ray, *bounce.hit)) *
+         lights.emitted(emission, bounce.ray.direction);
+}
+
+glm::vec3 PathTracer::shadowed(const SurfacePoint& point, const LightSample& sample,
+                               float weight_against, std::int64_t& rays) const {
+  const float cosine = glm::dot(sample.direction, point.normal);
+  if (!(cosine > 0.0f) || !(glm::dot(sample.direction, point.geometric) > 0.0f)) {
+    return glm::vec3(0.0f);
+  }
+  const Ray ray{ray_origin(point), sample.direction, 0.0f, sample.distance * (1.0f - kShort)};
+  ++rays;
+  if (world_.geometry.occluded(ray) || world_.lights.occluded(ray)) return glm::vec3(0.0f);
+  const float weight = power_heuristic(sample.pdf, weight_against * cosine / kPi);
+  return weight * cosine / kPi * sample.value * world_.geometry.glass_tint(ray);
+}
+
+// Light that reaches the point straight from one sun and one local light.
+glm::vec3 PathTracer::aim(const SurfacePoint& point, Sampler& sampler, std::int64_t& rays) const {
+  glm::vec3 sum(0.0f);
+  if (world_.lights.has_suns()) {
+    const auto sample = world_.lights.sample_sun(point.normal, sampler.next_2d());
+    if (sample) sum += shadowed(point, *sample, 0.0f, rays);  // no other ray finds a sun
+  }
+  if (world_.lights.has_local()) {
+    const float pick = sampler.next_1d();
+    const auto sample = world_.lights.sample_local(ray_origin(point), pick, sampler.next_2d());
+    if (sample) sum += shadowed(point, *sample, 1.0f, rays);
+  }
+  return sum;
+}
+
+glm::vec3 PathTracer::direct(const SurfacePoint& point, Sampler& sampler,
+                             std::int64_t& rays) const {
+  Bounce bounce;
+  const bool above = sample_ray(point, sampler, bounce);
+  glm::vec3 sum = aim(point, sampler, rays);
+  if (!above || !world_.lights.is_visible()) return sum;
+  trace(bounce, rays);
+  return sum + bounce.tint * seen(bounce);
+}
+
+glm::vec3 PathTracer::indirect(const SurfacePoint& point, Sampler& sampler,
+                               std::int64_t& rays) const {
+  glm::vec3 sum(0.0f), throughput(1.0f);
+  SurfacePoint at = point;
+  for (int depth = 0; depth <= bounces_; ++depth) {
+    // The ray beyond the last bounce only looks for lights.
+    if (depth == bounces_ && !world_.lights.is_visible()) break;
+    Bounce bounce;
+    if (!sample_ray(at, sampler, bounce)) break;
+    trace(bounce, rays);
+    throughput *= bounce.tint;
+    if (depth > 0) sum += throughput * seen(bounce);  // at depth 0 it is direct light
+    if (!bounce.hit || depth == bounces_) break;
+    at = world_.surfaces.bounce_point(bounce.ray, *bounce.hit);
+    throughput *= at.albedo;
+    sum += throughput * aim(at, sampler, rays);
+    if (depth == 0) continue;
+    // Russian roulette, from the second bounce on.
+    const float brightest = std::max({throughput.x, throughput.y, throughput.z});
+    const float survival = std::min(1.0f, brightest);
+    if (!(sampler.next_1d() < survival)) break;
+    throughput /= survival;
+  }
+  return sum;
+}
+
+}  // namespace eigenlight

@@ -1,0 +1,53 @@
+// Light at a point of a surface: direct, and by bounces.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+
+#include "render/embree_scene.h"
+#include "render/light_set.h"
+#include "render/sampler.h"
+#include "render/surface.h"
+
+namespace eigenlight {
+
+/// What rays travel through. All must outlive the tracer; poses and lights may change between
+/// calls.
+struct World {
+  const EmbreeScene& geometry;
+  const SurfaceTable& surfaces;
+  const LightSet& lights;
+};
+
+/// Estimates, one sample a call, of the two parts of the light that a Lambertian surface reflects,
+/// over its albedo: outgoing = albedo * (direct + indirect) + emission, where
+///   direct   = 1/pi * integral of radiance that lights emit * cosine
+///   indirect = 1/pi * integral of radiance that other surfaces reflect * cosine.
+/// Both are unbiased but for paths of more than `bounces` bounces, which indirect leaves out.
+/// Light is found by aiming at it and by cosine-distributed rays, combined by the power heuristic.
+class PathTracer {
+ public:
+  /// `bounces` in [1, 64]: 1 is light that one other surface reflects.
+  PathTracer(const World& world, int bounces) : world_(world), bounces_(bounces) {}
+
+  /// May be NaN or Inf if the scene is. Adds the rays that were traced to `rays`.
+  [[nodiscard]] glm::vec3 direct(const SurfacePoint& point, Sampler& sampler,
+                                 std::int64_t& rays) const;
+  [[nodiscard]] glm::vec3 indirect(const SurfacePoint& point, Sampler& sampler,
+                                   std::int64_t& rays) const;
+
+ private:
+  struct Bounce;
+  [[nodiscard]] glm::vec3 aim(const SurfacePoint& point, Sampler& sampler,
+                              std::int64_t& rays) const;
+  [[nodiscard]] glm::vec3 shadowed(const SurfacePoint& point, const LightSample& sample,
+                                   float weight_against, std::int64_t& rays) const;
+  [[nodiscard]] bool sample_ray(const SurfacePoint& point, Sampler& sampler, Bounce& bounce) const;
+  void trace(Bounce& bounce, std::int64_t& rays) const;
+  [[nodiscard]] glm::vec3 seen(const Bounce& bounce) const;
+
+  World world_;
+  int bounces_;
+};
+
+}  // namespace eigenlight

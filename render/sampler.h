@@ -1,0 +1,28 @@
+// Low-discrepancy samples without state.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+
+namespace eigenlight {
+
+/// The numbers of one sample of one pixel: an Owen-scrambled Sobol (0,2)-sequence in each pair of
+/// dimensions, the pairs shuffled against each other (Burley, Practical Hash-based Owen Scrambling,
+/// JCGT 9(4), 2020). Samples 0, 1, 2, ... of one key are together well spread, over any power of
+/// two of them best; keys are independent of each other.
+class Sampler {
+ public:
+  /// `key` names the pixel, frame and seed.
+  Sampler(std::uint32_t key, std::uint32_t index);
+
+  /// The next pair of dimensions, in [0, 1)^2.
+  [[nodiscard]] glm::vec2 next_2d();
+  /// One dimension of the next pair.
+  [[nodiscard]] float next_1d() { return next_2d().x; }
+
+ private:
+  std::uint32_t key_;
+  std::uint32_t reversed_index_;
+};
+
+}  // namespace eigenlight
