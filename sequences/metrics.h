@@ -14,7 +14,8 @@ namespace eigenlight {
 
 /// Figures of one frame, or their means over frames. Per pixel and channel x is the test, r the
 /// reference, e = x - r. With two independent references A and B, r = (A + B) / 2 and figures
-/// marked (u) are unbiased by the references' noise; they may then come out below 0.
+/// marked (u) are unbiased by the references' noise; they may then come out below 0. Noise in the
+/// denominator of relMSE leaves a bias there, small while the references are cleaner than the test.
 ///
 /// LDR figures compare display values d(v) = sRGB(clamp(exposure * v, 0, 1)), whose peak is 1.
 enum class Metric {
