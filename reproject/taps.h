@@ -1,4 +1,5 @@
-// Where a pixel was in the previous frame, and which of its four bilinear taps saw the same surface.
+// Where a pixel was in the previous frame, and which of its four bilinear taps saw the same
+// surface.
 #pragma once
 
 #include <array>
@@ -10,8 +11,8 @@
 namespace eigenlight {
 
 struct TapOptions {
-  /// (0, 1] of the depth: a tap whose surface lies farther off the pixel's plane is another surface.
-  /// 0.02 from the prototype (design table, section 3).
+  /// (0, 1] of the depth: a tap whose surface lies farther off the pixel's plane is another
+  /// surface. 0.02 from the prototype (design table, section 3).
   float plane_distance = 0.02f;
   /// [-1, 1): a tap whose normal makes a smaller cosine with the pixel's is another surface.
   float normal_cosine = 0.9f;
@@ -22,8 +23,9 @@ struct TapOptions {
 /// Pixels handled at once: the width of a stage tile.
 inline constexpr int kSegment = 64;
 
-/// The taps of up to kSegment pixels of one row. Weights of valid taps sum to 1; all four are 0 where
-/// no tap is valid (a new pixel) or the pixel shows no surface. Offsets are always inside the image.
+/// The taps of up to kSegment pixels of one row. Weights of valid taps sum to 1; all four are 0
+/// where no tap is valid (a new pixel) or the pixel shows no surface. Offsets are always inside the
+/// image.
 struct TapSegment {
   alignas(64) std::array<std::array<float, kSegment>, 4> weight;
   alignas(64) std::array<std::array<std::int32_t, kSegment>, 4> x, y;
@@ -38,11 +40,11 @@ struct PreviousSurface {
 /// Reverse reprojection (Nehab et al. 2007, as Chen 2012, section 3.4, uses it).
 ///
 /// Pixel p was at q = p + motion(p). Of the four pixels around q those are valid that lie in the
-/// image, carry the same object id, and satisfy, with N the normal at p and X the point's position one
-/// frame ago (pixel q at previous_depth, seen by the previous camera),
+/// image, carry the same object id, and satisfy, with N the normal at p and X the point's position
+/// one frame ago (pixel q at previous_depth, seen by the previous camera),
 ///   N . N_tap >= normal_cosine   and   |N . (X_tap - X)| <= plane_distance * depth.
-/// For an object that turned between the frames N is off by the turn; at film rates that stays within
-/// the plane bound. Motion or depth that is not finite leaves no valid tap.
+/// For an object that turned between the frames N is off by the turn; at film rates that stays
+/// within the plane bound. Motion or depth that is not finite leaves no valid tap.
 ///
 /// Fills taps for pixels [x0, x1) of row y; x1 - x0 <= kSegment.
 void compute_taps(const Frame& current, const PreviousSurface& previous, const TapOptions& options,

@@ -64,8 +64,8 @@ MF TapValid(const PreviousSurface& previous, const TapOptions& options, const Wa
     return hn::Add(hn::Mul(y, hn::Set(di, static_cast<int>(stride))), x);
   };
   const VI at = offset(surface.depth.stride());
-  const VI id = hn::GatherIndex(
-      di, reinterpret_cast<const std::int32_t*>(surface.id.row(0)), offset(surface.id.stride()));
+  const VI id = hn::GatherIndex(di, reinterpret_cast<const std::int32_t*>(surface.id.row(0)),
+                                offset(surface.id.stride()));
   const Vec3 normal{hn::GatherIndex(d, surface.normal[0].row(0), at),
                     hn::GatherIndex(d, surface.normal[1].row(0), at),
                     hn::GatherIndex(d, surface.normal[2].row(0), at)};
@@ -78,9 +78,9 @@ MF TapValid(const PreviousSurface& previous, const TapOptions& options, const Wa
                               hn::MulAdd(wanted.view_normal.y, ray_y, wanted.view_normal.z));
   const VF distance = hn::Abs(hn::Sub(hn::Mul(depth, along), wanted.plane));
   const MF same = hn::RebindMask(d, hn::Eq(id, wanted.id));
-  return hn::And(same, hn::And(hn::Le(distance, wanted.tolerance),
-                               hn::Ge(Dot(normal, wanted.normal),
-                                      hn::Set(d, options.normal_cosine))));
+  return hn::And(same,
+                 hn::And(hn::Le(distance, wanted.tolerance),
+                         hn::Ge(Dot(normal, wanted.normal), hn::Set(d, options.normal_cosine))));
 }
 
 // The pixel's own surface, and q = p + motion(p) in units of pixel centers.
@@ -104,8 +104,8 @@ Query LoadQuery(const Frame& current, const PreviousSurface& previous, const Tap
   const auto within = [&](VF v, float low, float high) {
     return hn::And(hn::Gt(v, hn::Set(d, low)), hn::Lt(v, hn::Set(d, high)));
   };
-  const VI id = hn::LoadU(
-      I(), reinterpret_cast<const std::int32_t*>(current.surface.id.row(y)) + x);
+  const VI id =
+      hn::LoadU(I(), reinterpret_cast<const std::int32_t*>(current.surface.id.row(y)) + x);
   const MF surface = hn::RebindMask(d, hn::Ne(id, hn::Zero(I())));
   q.valid = hn::And(hn::And(within(column, -1.0f, static_cast<float>(extent.width)),
                             within(line, -1.0f, static_cast<float>(extent.height))),
@@ -149,8 +149,8 @@ void ComputeTaps(const Frame& current, const PreviousSurface& previous, const Ta
       const VI ty = hn::Add(y0, hn::Set(di, static_cast<int>(t >> 1)));
       const VI cx = hn::Min(hn::Max(tx, zero), last_x), cy = hn::Min(hn::Max(ty, zero), last_y);
       const MF inside = hn::RebindMask(d, hn::And(hn::Eq(tx, cx), hn::Eq(ty, cy)));
-      const MF valid = hn::And(hn::And(q.valid, inside),
-                               TapValid(previous, options, q.wanted, rays, cx, cy));
+      const MF valid =
+          hn::And(hn::And(q.valid, inside), TapValid(previous, options, q.wanted, rays, cx, cy));
       const VF weight = hn::IfThenElseZero(valid, hn::Mul(wx[t & 1], wy[t >> 1]));
       sum = hn::Add(sum, weight);
       hn::Store(weight, d, taps.weight[t].data() + at);

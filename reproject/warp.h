@@ -6,12 +6,13 @@
 
 namespace eigenlight {
 
-/// to(p) = sum over the four taps of weight * from(tap), for the pixels [x0, x1) of row y0 of `row`:
-/// bases and age alike. Zero where all weights are zero. Warped bases are no longer orthogonal.
-/// `from` and `to` have the same number of bases and must not alias.
+/// to(p) = sum over the four taps of weight * from(tap), for the pixels [x0, x1) of row y0 of
+/// `row`: bases and age alike. Zero where all weights are zero. Warped bases are no longer
+/// orthogonal. `from` and `to` have the same number of bases and must not alias.
 void warp_bases(const BasisField& from, const TapSegment& taps, const Tile& row, BasisField& to);
 
 /// The same for one channel.
-void warp_plane(const Plane<float>& from, const TapSegment& taps, const Tile& row, Plane<float>& to);
+void warp_plane(const Plane<float>& from, const TapSegment& taps, const Tile& row,
+                Plane<float>& to);
 
 }  // namespace eigenlight

@@ -1,0 +1,87 @@
+#include "spatial/atrous.h"
+
+#include <numeric>
+
+#include "spatial/atrous_kernel.h"
+
+namespace eigenlight {
+namespace {
+
+float luminance(const Planes<3>& color, int x, int y) {
+  return 0.2126f * color[0](x, y) + 0.7152f * color[1](x, y) + 0.0722f * color[2](x, y);
+}
+
+bool is_quiet(const Planes<3>& color, const Plane<float>& variance, float quiet, const Tile& tile) {
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    for (int x = tile.x0; x < tile.x1; ++x) {
+      const float l = luminance(color, x, y);
+      if (variance(x, y) > quiet * l * l) return false;
+    }
+  }
+  return true;
+}
+
+void copy_tile(const AtrousPass& pass, const Tile& tile) {
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    const auto copy = [&](const Plane<float>& from, Plane<float>& to) {
+      std::copy(from.at(tile.x0, y), from.row(y) + tile.x1, to.at(tile.x0, y));
+    };
+    for (std::size_t c = 0; c < 3; ++c) copy(pass.color[c], pass.out_color[c]);
+    copy(pass.variance, pass.out_variance);
+  }
+}
+
+std::int64_t surface_pixels(const Frame& frame, const Tile& tile) {
+  std::int64_t count = 0;
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    for (int x = tile.x0; x < tile.x1; ++x) count += frame.surface.id(x, y) != 0 ? 1 : 0;
+  }
+  return count;
+}
+
+}  // namespace
+
+void AtrousOptions::validate() const {
+  EL_CHECK(passes >= 1 && passes <= 6, "passes {}: expected 1 to 6", passes);
+  EL_CHECK(luminance_sigmas > 0.0f && luminance_sigmas <= 100.0f,
+           "luminance_sigmas {}: expected (0, 100]", luminance_sigmas);
+  EL_CHECK(plane_distance > 0.0f && plane_distance <= 1.0f,
+           "plane_distance {}: expected (0, 1] of the depth", plane_distance);
+}
+
+Atrous::Atrous(Extent extent, const AtrousOptions& options)
+    : options_(options),
+      grid_(stage_tiles(extent)),
+      scratch_color_(make_planes<3>(extent)),
+      scratch_variance_(extent),
+      skipped_(static_cast<std::size_t>(grid_.count())) {
+  options.validate();
+}
+
+std::int64_t Atrous::process(const Frame& guides, float quiet, Planes<3>& color,
+                             Plane<float>& variance) {
+  const Extent extent = grid_.extent();
+  EL_CHECK(guides.extent() == extent && color[0].extent() == extent && variance.extent() == extent,
+           "a-trous filter made for {}x{}: got planes of another size", extent.width,
+           extent.height);
+  std::fill(skipped_.begin(), skipped_.end(), 0);
+  for (int i = 0; i < options_.passes; ++i) {
+    const AtrousPass pass{guides,   options_,       1 << i,           color,
+                          variance, scratch_color_, scratch_variance_};
+    for_each_tile(grid_, [&](const Tile& tile) {
+      const auto index = static_cast<std::size_t>(tile.index);
+      const std::int64_t surface = surface_pixels(guides, tile);
+      if (surface == 0 || is_quiet(color, variance, quiet, tile)) {
+        copy_tile(pass, tile);
+        if (i == 0) skipped_[index] = surface;
+      } else {
+        atrous_tile(pass, tile);
+      }
+    });
+    std::swap(color, scratch_color_);
+    std::swap(variance, scratch_variance_);
+  }
+  return std::accumulate(skipped_.begin(), skipped_.end(), std::int64_t{0});
+}
+
+}  // namespace eigenlight

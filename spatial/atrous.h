@@ -1,0 +1,47 @@
+// Edge-avoiding a-trous wavelet passes, steered by variance.
+#pragma once
+
+#include <functional>
+
+#include "frame/frame.h"
+#include "frame/tiles.h"
+
+namespace eigenlight {
+
+struct AtrousOptions {
+  int passes = 3;  ///< [1, 6]; pass i reaches 2 * 2^i pixels
+  /// (0, 100] standard deviations of luminance that still count as the same light.
+  float luminance_sigmas = 3.0f;
+  /// (0, 1] of the depth: distance off the pixel's plane that weighs a neighbor by 1/e.
+  float plane_distance = 0.02f;
+
+  void validate() const;  ///< throws std::invalid_argument naming the field
+};
+
+/// Dammertz et al. 2010 with the variance steering of Schied et al. 2017 (SVGF, section 4.4):
+///   out(p) = sum_q h(q) w(p, q) c(q) / sum_q h(q) w(p, q),  h the 5 x 5 B3-spline with holes,
+///   w = max(0, N_p . N_q)^64 * exp(-|N_p . (X_q - X_p)| / (plane_distance * depth_p)
+///                                  - |l_q - l_p| / (luminance_sigmas * sigma_p + 1e-4 l_p))
+/// where sigma_p^2 is the variance of luminance around p (3 x 3 Gaussian) and the exponential is
+/// (1 - x/8)^8, which ends at x = 8. Variances follow: var(p) = sum (h w)^2 var(q) / (sum h w)^2.
+/// Pixels without surface neither give nor take; they keep their value.
+///
+/// `color` and `variance` are filtered in place; the scratch planes have the same extent. Tiles in
+/// which no variance exceeds `quiet` times the squared luminance are copied; `skipped` counts their
+/// pixels. Throws std::invalid_argument if extents differ.
+class Atrous {
+ public:
+  Atrous(Extent extent, const AtrousOptions& options);
+
+  /// Returns the number of surface pixels that were skipped in the first pass.
+  std::int64_t process(const Frame& guides, float quiet, Planes<3>& color, Plane<float>& variance);
+
+ private:
+  AtrousOptions options_;
+  TileGrid grid_;
+  Planes<3> scratch_color_;
+  Plane<float> scratch_variance_;
+  std::vector<std::int64_t> skipped_;  // per tile
+};
+
+}  // namespace eigenlight

@@ -1,0 +1,23 @@
+// One pass of the a-trous filter over one tile; see atrous.h.
+#pragma once
+
+#include "spatial/atrous.h"
+
+namespace eigenlight {
+
+/// Widest tile of the kernel.
+inline constexpr int kAtrousWidth = 64;
+
+struct AtrousPass {
+  const Frame& guides;
+  const AtrousOptions& options;
+  int step;  ///< pixels between taps
+  const Planes<3>& color;
+  const Plane<float>& variance;
+  Planes<3>& out_color;
+  Plane<float>& out_variance;
+};
+
+void atrous_tile(const AtrousPass& pass, const Tile& tile);
+
+}  // namespace eigenlight

@@ -1,0 +1,127 @@
+#include "temporal/coefficients.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "temporal/small_matrix.h"
+
+namespace eigenlight {
+namespace {
+
+TileSums window_sums(std::span<const TileSums> sums, const TileGrid& grid, int index) {
+  TileSums total;
+  const int column = index % grid.columns(), row = index / grid.columns();
+  for (int dy = -1; dy <= 1; ++dy) {
+    for (int dx = -1; dx <= 1; ++dx) {
+      const int x = column + dx, y = row + dy;
+      if (x < 0 || y < 0 || x >= grid.columns() || y >= grid.rows()) continue;
+      const double weight = (2 - std::abs(dx)) * (2 - std::abs(dy)) / 4.0;
+      TileSums part = sums[static_cast<std::size_t>(y * grid.columns() + x)];
+      for (double& g : part.gram) g *= weight;
+      for (double& d : part.innovation) d *= weight;
+      for (double& s : part.spread) s *= weight * weight;
+      part.pixels *= weight;
+      total += part;
+    }
+  }
+  return total;
+}
+
+// delta and its variance for the bases that have energy; zeros for the others.
+struct Solution {
+  SmallVector delta, variance;
+};
+
+Solution solve(const TileSums& sums, int bases) {
+  Solution out{SmallVector::Zero(bases), SmallVector::Zero(bases)};
+  std::array<int, kMaxBases> used{};
+  int rank = 0;
+  const double first = sums.gram[0];
+  for (int k = 0; k < bases; ++k) {
+    // Below 1e-10 of the first basis' energy a basis is float noise of the warp.
+    if (sums.gram[static_cast<std::size_t>(packed(k, k))] > 1e-10 * first) {
+      used[static_cast<std::size_t>(rank++)] = k;
+    }
+  }
+  if (rank == 0 || !(first > 0.0)) return out;
+
+  SmallMatrix gram(rank, rank);
+  SmallVector right(rank), spread(rank);
+  for (int a = 0; a < rank; ++a) {
+    const int j = used[static_cast<std::size_t>(a)];
+    right[a] = sums.innovation[static_cast<std::size_t>(j)];
+    spread[a] = sums.spread[static_cast<std::size_t>(j)];
+    for (int b = 0; b <= a; ++b) {
+      const int i = used[static_cast<std::size_t>(b)];
+      gram(a, b) = gram(b, a) = sums.gram[static_cast<std::size_t>(packed(i, j))];
+    }
+    // A ridge of 1e-6 of its own energy keeps nearly parallel bases apart (condition <= 1e6).
+    gram(a, a) *= 1.0 + 1e-6;
+  }
+  const SmallMatrix inverse = gram.ldlt().solve(SmallMatrix::Identity(rank, rank));
+  const SmallVector delta = inverse * right;
+  for (int a = 0; a < rank; ++a) {
+    const int k = used[static_cast<std::size_t>(a)];
+    out.delta[k] = delta[a];
+    for (int b = 0; b < rank; ++b) {
+      out.variance[k] += inverse(a, b) * inverse(a, b) * spread[b];
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+void ShrinkOptions::validate() const {
+  EL_CHECK(noise >= 0.0 && noise <= 100.0, "noise {}: expected [0, 100] variances", noise);
+}
+
+CoefficientField::CoefficientField(Extent extent, int bases)
+    : grid_(extent, kCoefficientTile, kCoefficientTile),
+      bases_(bases),
+      values_(static_cast<std::size_t>(grid_.count() * bases), 0.0f) {}
+
+void CoefficientField::row(const Tile& row, int k, float* out) const {
+  const int column = row.x0 / kCoefficientTile;
+  constexpr float kInverse = 1.0f / kCoefficientTile;
+
+  // Blend the two tile rows around y, for the tile's own column and its neighbors.
+  const float ty = (static_cast<float>(row.y0) + 0.5f) * kInverse - 0.5f;
+  const int y0 = std::clamp(static_cast<int>(std::floor(ty)), 0, grid_.rows() - 1);
+  const int y1 = std::min(y0 + 1, grid_.rows() - 1);
+  const float fy = std::clamp(ty - static_cast<float>(y0), 0.0f, 1.0f);
+  float blended[3];
+  for (int i = 0; i < 3; ++i) {
+    const int x = std::clamp(column + i - 1, 0, grid_.columns() - 1);
+    const float upper = tile(y0 * grid_.columns() + x)[static_cast<std::size_t>(k)];
+    const float lower = tile(y1 * grid_.columns() + x)[static_cast<std::size_t>(k)];
+    blended[i] = upper + fy * (lower - upper);
+  }
+
+  const float steady = k == 0 ? 1.0f : 0.0f;
+  for (int x = row.x0; x < row.x1; ++x) {
+    // In [-0.5, 0.5) across the tile.
+    const float t = (static_cast<float>(x - column * kCoefficientTile) + 0.5f) * kInverse - 0.5f;
+    const float neighbor = t < 0.0f ? blended[0] : blended[2];
+    out[x - row.x0] = steady + blended[1] + std::abs(t) * (neighbor - blended[1]);
+  }
+}
+
+void solve_coefficients(std::span<const TileSums> sums, const ShrinkOptions& options,
+                        CoefficientField& field) {
+  const TileGrid& grid = field.grid();
+  EL_CHECK(sums.size() == static_cast<std::size_t>(grid.count()), "{} tile sums for {} tiles",
+           sums.size(), grid.count());
+  parallel_for(grid.count(), [&](int index) {
+    const Solution s = solve(window_sums(sums, grid, index), field.bases());
+    const auto out = field.tile(index);
+    for (int k = 0; k < field.bases(); ++k) {
+      const double square = s.delta[k] * s.delta[k];
+      const double kept =
+          square > 0.0 ? std::max(0.0, 1.0 - options.noise * s.variance[k] / square) : 0.0;
+      out[static_cast<std::size_t>(k)] = static_cast<float>(kept * s.delta[k]);
+    }
+  });
+}
+
+}  // namespace eigenlight

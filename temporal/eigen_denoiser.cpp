@@ -1,0 +1,261 @@
+#include "temporal/eigen_denoiser.h"
+
+#include <cmath>
+
+#include "reproject/warp.h"
+#include "temporal/predict.h"
+#include "temporal/stage_clock.h"
+#include "temporal/update.h"
+
+namespace eigenlight {
+
+void EigenOptions::validate() const {
+  taps.validate();
+  shrink.validate();
+  innovation.validate();
+  budget.validate();
+  atrous.validate();
+  EL_CHECK(quiet >= 0.0f && quiet <= 1.0f, "quiet {}: expected [0, 1]", quiet);
+}
+
+EigenDenoiser::EigenDenoiser(const DenoiserOptions& options, const EigenOptions& parts)
+    : options_(parts),
+      extent_(options.extent),
+      tiles_(extent_, kCoefficientTile, kCoefficientTile),
+      bases_(extent_, options.bases),
+      warped_bases_(extent_, options.bases),
+      variance_(extent_),
+      warped_variance_(extent_),
+      budget_(extent_, parts.budget),
+      atrous_(extent_, parts.atrous),
+      coefficients_(extent_, options.bases),
+      sums_(static_cast<std::size_t>(tiles_.count())),
+      newborn_(static_cast<std::size_t>(tiles_.count())),
+      counts_(static_cast<std::size_t>(tiles_.count())),
+      extra_(extent_),
+      extra_mean_(make_planes<3>(extent_)),
+      light_(make_planes<3>(extent_)),
+      prediction_(make_planes<3>(extent_)),
+      output_(make_planes<3>(extent_)),
+      samples_(extent_),
+      residual_(extent_),
+      confirmed_(extent_),
+      old_age_(extent_),
+      new_age_(extent_),
+      output_variance_(extent_) {
+  parts.validate();
+  history_surface_.resize(extent_);
+}
+
+const Planes<3>* EigenDenoiser::step(FrameSource& source) {
+  StageClock clock;
+  if (!source.next(frame_)) return nullptr;
+  check_frame();
+  report_ = {};
+  report_.frame = frame_.index;
+  report_.cut = !has_history_ || history_index_ != frame_.previous_index;
+  report_[Stage::kSource] = clock.lap();
+  warp_history();
+  report_[Stage::kReproject] = clock.lap();
+  resample(source);
+  report_[Stage::kResample] = clock.lap();
+  project();
+  report_[Stage::kProject] = clock.lap();
+  update();
+  report_[Stage::kUpdate] = clock.lap();
+  filter();
+  report_[Stage::kFilter] = clock.lap();
+  keep_history();
+  report_.rays = frame_.rays;
+  report_.non_finite_samples = frame_.non_finite_samples;
+  return &output_;
+}
+
+void EigenDenoiser::check_frame() const {
+  EL_CHECK(frame_.extent() == extent_, "frame {} is {}x{}, expected {}x{}", frame_.index,
+           frame_.extent().width, frame_.extent().height, extent_.width, extent_.height);
+}
+
+void EigenDenoiser::warp_history() {
+  const bool still = !report_.cut && frame_.is_static;
+  std::fill(sums_.begin(), sums_.end(), TileSums{});
+  if (report_.cut) {
+    bases_.data().fill(0.0f);
+    variance_.fill(0.0f);
+  }
+  const bool moving = !report_.cut && !still;
+  for_each_tile(tiles_, [&](const Tile& tile) {
+    if (moving) warp_tile(tile);
+    if (report_.cut) return;
+    accumulate_tile(
+        {moving ? warped_bases_ : bases_, frame_, moving ? warped_variance_ : variance_}, tile,
+        sums_[static_cast<std::size_t>(tile.index)]);
+  });
+  if (moving) {
+    std::swap(bases_, warped_bases_);
+    std::swap(variance_, warped_variance_);
+  }
+  if (still) report_.skipped_warp = static_cast<std::int64_t>(extent_.pixels());
+}
+
+void EigenDenoiser::warp_tile(const Tile& tile) {
+  TapSegment taps;
+  const PreviousSurface previous{history_camera_, history_surface_};
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    const Tile row{tile.x0, y, tile.x1, y + 1, tile.index};
+    compute_taps(frame_, previous, options_.taps, row, taps);
+    warp_bases(bases_, taps, row, warped_bases_);
+    warp_plane(variance_, taps, row, warped_variance_);
+  }
+}
+
+void EigenDenoiser::resample(FrameSource& source) {
+  for_each_tile(tiles_, [&](const Tile& tile) {
+    for (int y = tile.y0; y < tile.y1; ++y) {
+      for (int x = tile.x0; x < tile.x1; ++x) old_age_(x, y) = bases_.age(x, y);
+    }
+  });
+  const BudgetStats stats = budget_.process(frame_, old_age_, extra_);
+  const bool resampled = stats.samples > 0 && source.resample(extra_, frame_, extra_mean_);
+  if (resampled) report_.extra_samples = stats.samples;
+  for_each_tile(tiles_, [&](const Tile& tile) { merge_samples(tile, resampled); });
+  for (const TileCount& count : counts_) {
+    report_.surface_pixels += count.surface;
+    report_.new_pixels += count.fresh;
+    report_.non_finite_pixels += count.non_finite;
+  }
+}
+
+// The mean of all samples of each pixel; what is not finite is left out.
+void EigenDenoiser::merge_samples(const Tile& tile, bool resampled) {
+  TileCount& count = counts_[static_cast<std::size_t>(tile.index)];
+  count = {};
+  const float regular = static_cast<float>(std::max(frame_.spp, 1));
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    for (int x = tile.x0; x < tile.x1; ++x) {
+      const bool surface = frame_.surface.id(x, y) != 0;
+      const float extra = resampled ? static_cast<float>(extra_(x, y)) : 0.0f;
+      const float scale = 1.0f / (regular + extra);
+      float sum = 0.0f;
+      for (std::size_t c = 0; c < 3; ++c) {
+        const float more = extra > 0.0f ? extra * extra_mean_[c](x, y) : 0.0f;
+        light_[c](x, y) = (regular * frame_.indirect[c](x, y) + more) * scale;
+        sum += light_[c](x, y);
+      }
+      const bool usable = surface && std::isfinite(sum);
+      samples_(x, y) = usable ? (regular + extra) / regular : 0.0f;
+      count.surface += surface ? 1 : 0;
+      count.fresh += surface && old_age_(x, y) == 0.0f ? 1 : 0;
+      count.non_finite += surface && !usable ? 1 : 0;
+    }
+  }
+}
+
+void EigenDenoiser::project() {
+  solve_coefficients(sums_, options_.shrink, coefficients_);
+  std::fill(newborn_.begin(), newborn_.end(), 0);
+  for_each_tile(tiles_, [&](const Tile& tile) {
+    predict_tile(bases_, coefficients_, light_, tile,
+                 {prediction_, residual_, confirmed_, old_age_});
+  });
+}
+
+void EigenDenoiser::update() {
+  for_each_tile(tiles_, [&](const Tile& tile) {
+    innovation_tile({residual_, confirmed_, old_age_, samples_}, options_.innovation, tile,
+                    {new_age_, variance_});
+    fresh_variance(tile);
+    update_tile({coefficients_, prediction_, light_, samples_, old_age_, new_age_, newborn_}, tile,
+                bases_, output_);
+  });
+}
+
+// One frame's variance at new pixels: that of luminance over the 7 x 7 pixels around, whose
+// structure counts as noise until history tells them apart.
+void EigenDenoiser::fresh_variance(const Tile& tile) {
+  constexpr int kRadius = 3;
+  const auto& u = frame_.indirect;
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    for (int x = tile.x0; x < tile.x1; ++x) {
+      if (old_age_(x, y) > 0.0f || frame_.surface.id(x, y) == 0) continue;
+      double count = 0.0, sum = 0.0, square = 0.0;
+      for (int j = std::max(y - kRadius, 0); j <= std::min(y + kRadius, extent_.height - 1); ++j) {
+        for (int i = std::max(x - kRadius, 0); i <= std::min(x + kRadius, extent_.width - 1); ++i) {
+          if (!(samples_(i, j) > 0.0f)) continue;
+          const double l = 0.2126 * u[0](i, j) + 0.7152 * u[1](i, j) + 0.0722 * u[2](i, j);
+          count += 1.0;
+          sum += l;
+          square += l * l;
+        }
+      }
+      const double mean = count > 0.0 ? sum / count : 0.0;
+      variance_(x, y) =
+          count > 1.0 ? static_cast<float>(std::max(square / count - mean * mean, 0.0)) : 0.0f;
+    }
+  }
+}
+
+void EigenDenoiser::filter() {
+  for_each_tile(tiles_, [&](const Tile& tile) {
+    for (int y = tile.y0; y < tile.y1; ++y) {
+      for (int x = tile.x0; x < tile.x1; ++x) {
+        output_variance_(x, y) = new_age_(x, y) > 0.0f ? variance_(x, y) / new_age_(x, y) : 0.0f;
+      }
+    }
+  });
+  report_.skipped_filter = atrous_.process(frame_, options_.quiet, output_, output_variance_);
+}
+
+void EigenDenoiser::keep_history() {
+  has_history_ = true;
+  history_index_ = frame_.index;
+  history_camera_ = frame_.camera;
+  for_each_tile(tiles_, [&](const Tile& tile) {
+    const auto copy = [&](const auto& from, auto& to) {
+      for (int y = tile.y0; y < tile.y1; ++y) {
+        std::copy(from.at(tile.x0, y), from.row(y) + tile.x1, to.at(tile.x0, y));
+      }
+    };
+    copy(frame_.surface.depth, history_surface_.depth);
+    copy(frame_.surface.id, history_surface_.id);
+    for (std::size_t c = 0; c < 3; ++c) copy(frame_.surface.normal[c], history_surface_.normal[c]);
+  });
+}
+
+void EigenDenoiser::save(StateWriter& out) const {
+  out.value("eigenlight", 1);
+  out.value("has_history", has_history_);
+  out.value("index", history_index_);
+  out.value("camera", history_camera_);
+  out.plane("depth", history_surface_.depth);
+  out.planes("normal", history_surface_.normal);
+  out.plane("id", history_surface_.id);
+  out.value("bases", bases_.bases());
+  out.plane("basis values", bases_.data());
+  out.plane("variance", variance_);
+}
+
+void EigenDenoiser::load(StateReader& in) {
+  const auto expect = [](std::string_view name, int found, int wanted) {
+    if (found == wanted) return;
+    throw std::runtime_error(
+        fmt::format("state of 'eigenlight': {} {}, expected {}", name, found, wanted));
+  };
+  int version = 0, bases = 0;
+  in.value("eigenlight", version);
+  expect("version", version, 1);
+  in.value("has_history", has_history_);
+  in.value("index", history_index_);
+  in.value("camera", history_camera_);
+  in.plane("depth", history_surface_.depth);
+  in.planes("normal", history_surface_.normal);
+  in.plane("id", history_surface_.id);
+  in.value("bases", bases);
+  expect("bases", bases, bases_.bases());
+  in.plane("basis values", bases_.data());
+  in.plane("variance", variance_);
+  expect("width", variance_.width(), extent_.width);
+  expect("height", variance_.height(), extent_.height);
+}
+
+}  // namespace eigenlight

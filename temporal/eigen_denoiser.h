@@ -1,0 +1,88 @@
+// Ours: reprojected incremental PCA with leave-one-out coefficients per tile.
+#pragma once
+
+#include <vector>
+
+#include "reproject/basis_field.h"
+#include "reproject/taps.h"
+#include "spatial/atrous.h"
+#include "spatial/sample_budget.h"
+#include "temporal/coefficients.h"
+#include "temporal/denoiser.h"
+#include "temporal/innovation.h"
+
+namespace eigenlight {
+
+struct EigenOptions {
+  TapOptions taps;
+  ShrinkOptions shrink;
+  InnovationOptions innovation;
+  BudgetOptions budget;
+  AtrousOptions atrous;
+  /// [0, 1] of the squared luminance: a tile whose variances all lie below it is not filtered.
+  float quiet = 1e-5f;
+
+  void validate() const;  ///< throws std::invalid_argument naming the field
+};
+
+/// The frame loop of design section 4. Per frame:
+///   warp bases, ages and variances through validated taps; sum the tiles' inner products on the
+///   way; give young pixels more samples; solve the coefficients on the warped bases; predict; test
+///   the residual; update the bases; filter the estimate spatially, by its variance.
+/// The filtered picture is the output only: the history stays unfiltered, so that blur never adds
+/// up.
+class EigenDenoiser final : public Denoiser {
+ public:
+  explicit EigenDenoiser(const DenoiserOptions& options, const EigenOptions& parts = {});
+
+  [[nodiscard]] const Planes<3>* step(FrameSource& source) override;
+  [[nodiscard]] const Frame& frame() const override { return frame_; }
+  [[nodiscard]] const FrameReport& report() const override { return report_; }
+  [[nodiscard]] const Plane<float>& age() const override { return new_age_; }
+  void reset() override { has_history_ = false; }
+  void save(StateWriter& out) const override;
+  void load(StateReader& in) override;
+
+ private:
+  void check_frame() const;
+  void warp_history();
+  void warp_tile(const Tile& tile);
+  void resample(FrameSource& source);
+  void merge_samples(const Tile& tile, bool resampled);
+  void project();
+  void update();
+  void filter();
+  void fresh_variance(const Tile& tile);
+  void keep_history();
+
+  struct TileCount {
+    std::int64_t surface = 0, fresh = 0, non_finite = 0;
+  };
+
+  EigenOptions options_;
+  Extent extent_;
+  TileGrid tiles_;  // of coefficients
+  Frame frame_;
+  FrameReport report_;
+
+  // History: of the frame before, once warped of this one.
+  bool has_history_ = false;
+  int history_index_ = 0;
+  Camera history_camera_;
+  GBuffer history_surface_;
+  BasisField bases_, warped_bases_;
+  Plane<float> variance_, warped_variance_;  // of one frame's luminance
+
+  // Scratch, and what the last frame left for the caller.
+  SampleBudget budget_;
+  Atrous atrous_;
+  CoefficientField coefficients_;
+  std::vector<TileSums> sums_;
+  std::vector<int> newborn_;
+  std::vector<TileCount> counts_;
+  Plane<std::uint8_t> extra_;
+  Planes<3> extra_mean_, light_, prediction_, output_;
+  Plane<float> samples_, residual_, confirmed_, old_age_, new_age_, output_variance_;
+};
+
+}  // namespace eigenlight

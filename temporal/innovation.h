@@ -1,0 +1,41 @@
+// Is the history wrong here? A test of the residual's local mean against its own noise.
+#pragma once
+
+#include "frame/frame.h"
+#include "frame/tiles.h"
+
+namespace eigenlight {
+
+struct InnovationOptions {
+  /// [0, 100] squared standard errors that a local mean may be off by chance. 2 from the prototype.
+  float threshold = 2.0f;
+  /// [1, 255] frames: ages saturate here. The prototype used 64.
+  float max_age = 64.0f;
+
+  void validate() const;  ///< throws std::invalid_argument naming the field
+};
+
+struct InnovationInputs {
+  const Plane<float>& residual;   ///< luminance of u - prediction
+  const Plane<float>& confirmed;  ///< 1 where the residual means something, else 0
+  const Plane<float>& age;        ///< of the history
+  const Plane<float>& samples;    ///< this frame's samples over its regular number, >= 1
+};
+
+struct InnovationOutputs {
+  Plane<float>& age;       ///< frames' worth of samples after this frame; may be the input
+  Plane<float>& variance;  ///< in: one frame's variance so far (warped); out: with this frame
+};
+
+/// Over the window of 9 x 9 pixels, with N confirmed residuals e, mean mu and variance v:
+///   t = mu^2 / (v / N * (1 + 1/n)),   b^2 = mu^2 max(0, 1 - threshold / t)
+/// is the squared bias that noise does not explain. The history of n frames is off by v/n + b^2,
+/// this frame's mean over s times the regular samples by v/s, so the Kalman gain that balances them
+/// is
+///   w = (v/n + b^2) / (v/n + b^2 + v/s),   and the new age s/w, at most max_age.
+/// Without bias that is n + s. New pixels start at age s. Unconfirmed pixels (no usable sample)
+/// keep their age. The variance of one frame is a running mean of v over min(n, 16) frames.
+void innovation_tile(const InnovationInputs& in, const InnovationOptions& options, const Tile& tile,
+                     const InnovationOutputs& out);
+
+}  // namespace eigenlight

@@ -1,0 +1,39 @@
+// Inner products of a tile: all that projection and rank decisions need of its pixels.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "frame/frame.h"
+#include "reproject/basis_field.h"
+#include "reproject/basis_rows.h"
+
+namespace eigenlight {
+
+/// Index of (i, j), i <= j, in a packed upper triangle.
+[[nodiscard]] constexpr int packed(int i, int j) { return j * (j + 1) / 2 + i; }
+
+/// Sums over the pixels p of one tile, <a, b> = sum_p m(p) sum_c a_c(p) b_c(p), with r = u - V_0.
+struct TileSums {
+  std::array<double, kMaxBases*(kMaxBases + 1) / 2> gram{};  ///< <V_i, V_j>, packed
+  std::array<double, kMaxBases> innovation{};                ///< <V_i, r>
+  std::array<double, kMaxBases> spread{};  ///< sum_p m^2 (V_i . r)^2: variance of innovation[i]
+  double pixels = 0.0;                     ///< with m > 0
+
+  TileSums& operator+=(const TileSums& other);
+};
+
+/// What the sums are taken over.
+struct SumInputs {
+  const BasisField& bases;       ///< warped, not yet updated (leave one out)
+  const Frame& frame;            ///< raw indirect light u
+  const Plane<float>& variance;  ///< of one frame's luminance, from earlier frames only
+};
+
+/// Adds the pixels of `tile` (at most kSegment wide) to `sums`. A pixel counts with
+///   m = n / (n + 1) / (variance + 0.01 * luminance(V_0)^2)
+/// (the inverse of its expected squared innovation, n its age), and with 0 where it has no history
+/// or u is not finite. Sums along a row are in float, over rows in double.
+void accumulate_tile(const SumInputs& in, const Tile& tile, TileSums& sums);
+
+}  // namespace eigenlight

@@ -1,0 +1,139 @@
+#include <algorithm>
+#include <limits>
+
+#include "temporal/tile_sums.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "temporal/tile_sums_simd.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace eigenlight::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using F = hn::ScalableTag<float>;
+using VF = hn::Vec<F>;
+
+// One row of a tile: the bases, the residual r = u - V_0 and the weight m of each pixel.
+struct Row {
+  BasisRows bases;
+  alignas(64) float residual[3][kSegment];
+  alignas(64) float weight[kSegment];
+  int vectors;  // whole vectors of lanes that cover the row
+};
+
+void LoadRow(const SumInputs& in, const Tile& segment, Row& row) {
+  const F d;
+  load_rows(in.bases, segment, row.bases);
+  const int bases = in.bases.bases(), lanes = static_cast<int>(hn::Lanes(d));
+  const int count = segment.x1 - segment.x0;
+  row.vectors = (count + lanes - 1) / lanes;
+  const VF largest = hn::Set(d, std::numeric_limits<float>::max());
+  for (int i = 0; i < count; i += lanes) {
+    VF u[3], v[3];
+    for (int c = 0; c < 3; ++c) {
+      u[c] = hn::LoadU(
+          d, in.frame.indirect[static_cast<std::size_t>(c)].row(segment.y0) + segment.x0 + i);
+      v[c] = hn::Load(d, row.bases.values[c * bases] + i);
+    }
+    const VF age = hn::Load(d, row.bases.age + i);
+    // Rec. 709 luminance; comparisons with NaN are false.
+    const VF luminance =
+        hn::MulAdd(hn::Set(d, 0.2126f), v[0],
+                   hn::MulAdd(hn::Set(d, 0.7152f), v[1], hn::Mul(hn::Set(d, 0.0722f), v[2])));
+    const VF variance = hn::LoadU(d, in.variance.row(segment.y0) + segment.x0 + i);
+    const VF expected = hn::MulAdd(hn::Mul(hn::Set(d, 0.01f), luminance), luminance, variance);
+    auto used = hn::And(hn::Gt(age, hn::Zero(d)), hn::Gt(expected, hn::Set(d, 1e-30f)));
+    for (const VF& value : u) used = hn::And(used, hn::Le(hn::Abs(value), largest));
+    const VF weight = hn::Div(age, hn::Mul(hn::Add(age, hn::Set(d, 1.0f)),
+                                           hn::IfThenElse(used, expected, hn::Set(d, 1.0f))));
+    hn::Store(hn::IfThenElseZero(used, weight), d, row.weight + i);
+    for (int c = 0; c < 3; ++c) {
+      hn::Store(hn::IfThenElseZero(used, hn::Sub(u[c], v[c])), d, row.residual[c] + i);
+    }
+  }
+  for (int i = count; i < row.vectors * lanes; ++i) {
+    row.weight[i] = 0.0f;
+    for (auto& channel : row.residual) channel[i] = 0.0f;
+  }
+}
+
+// sum_c a_c b_c of one vector of pixels; the channels of a and b stand `a_step`, `b_step` apart.
+VF DotChannels(const float (*a)[kSegment], int a_step, const float (*b)[kSegment], int b_step) {
+  const F d;
+  VF sum = hn::Mul(hn::Load(d, a[0]), hn::Load(d, b[0]));
+  sum = hn::MulAdd(hn::Load(d, a[a_step]), hn::Load(d, b[b_step]), sum);
+  return hn::MulAdd(hn::Load(d, a[2 * a_step]), hn::Load(d, b[2 * b_step]), sum);
+}
+
+const float (*Shift(const float (*rows)[kSegment], int i))[kSegment] {
+  return reinterpret_cast<const float(*)[kSegment]>(rows[0] + i);
+}
+
+void AddRow(const Row& row, int bases, TileSums& sums) {
+  const F d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  const auto total = [&](VF v) { return static_cast<double>(hn::GetLane(hn::SumOfLanes(d, v))); };
+  const float(*values)[kSegment] = row.bases.values;
+  for (int j = 0; j < bases; ++j) {
+    for (int k = 0; k <= j; ++k) {
+      VF sum = hn::Zero(d);
+      for (int i = 0; i < row.vectors * lanes; i += lanes) {
+        const VF dot = DotChannels(Shift(values + j, i), bases, Shift(values + k, i), bases);
+        sum = hn::MulAdd(hn::Load(d, row.weight + i), dot, sum);
+      }
+      sums.gram[static_cast<std::size_t>(packed(k, j))] += total(sum);
+    }
+    VF innovation = hn::Zero(d), spread = hn::Zero(d);
+    for (int i = 0; i < row.vectors * lanes; i += lanes) {
+      const VF dot = DotChannels(Shift(values + j, i), bases, Shift(row.residual, i), 1);
+      const VF weighted = hn::Mul(hn::Load(d, row.weight + i), dot);
+      innovation = hn::Add(innovation, weighted);
+      spread = hn::MulAdd(weighted, weighted, spread);
+    }
+    sums.innovation[static_cast<std::size_t>(j)] += total(innovation);
+    sums.spread[static_cast<std::size_t>(j)] += total(spread);
+  }
+}
+
+void AccumulateTile(const SumInputs& in, const Tile& tile, TileSums& sums) {
+  Row row;
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    LoadRow(in, {tile.x0, y, tile.x1, y + 1, tile.index}, row);
+    const int count = tile.x1 - tile.x0;
+    const auto used = std::count_if(row.weight, row.weight + count, [](float m) { return m > 0; });
+    if (used == 0) continue;
+    sums.pixels += static_cast<double>(used);
+    AddRow(row, in.bases.bases(), sums);
+  }
+}
+
+}  // namespace
+}  // namespace eigenlight::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace eigenlight {
+
+HWY_EXPORT(AccumulateTile);
+
+void accumulate_tile(const SumInputs& in, const Tile& tile, TileSums& sums) {
+  EL_DCHECK(tile.x1 - tile.x0 <= kSegment);
+  HWY_DYNAMIC_DISPATCH(AccumulateTile)(in, tile, sums);
+}
+
+TileSums& TileSums::operator+=(const TileSums& other) {
+  const auto add = [](auto& to, const auto& from) {
+    std::transform(to.begin(), to.end(), from.begin(), to.begin(), std::plus<>());
+  };
+  add(gram, other.gram);
+  add(innovation, other.innovation);
+  add(spread, other.spread);
+  pixels += other.pixels;
+  return *this;
+}
+
+}  // namespace eigenlight
+#endif
