@@ -5,9 +5,9 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <filesystem>
-#include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <ostream>
 
 #include "sequences/atomic_file.h"
 
@@ -81,7 +81,7 @@ void add_outputs(CLI::App& command, CommandOptions& options) {
   command.add_option("-o,--output", options.directory, "Directory for evaluate.json");
 }
 
-void run(const CLI::App& command, const CommandOptions& given) {
+void run(const CLI::App& command, const CommandOptions& given, std::ostream& out) {
   EvaluateOptions options = given.evaluate;
   if (command.count("--test-layer") > 0) options.test_layer = given.test_layer;
   if (command.count("--reference-noise") > 0) {
@@ -94,8 +94,8 @@ void run(const CLI::App& command, const CommandOptions& given) {
     write_file_atomically(std::filesystem::path(given.directory) / "evaluate.json",
                           std::string_view(json));
   }
-  std::cout << (given.prints_json ? json : to_table(evaluation)) << std::flush;
-  if (!std::cout) throw std::runtime_error("cannot write to standard output");
+  out << (given.prints_json ? json : to_table(evaluation)) << std::flush;
+  if (!out) throw std::runtime_error("cannot write to standard output");
 }
 
 }  // namespace
@@ -146,13 +146,13 @@ std::string to_table(const Evaluation& evaluation) {
   return text;
 }
 
-void add_evaluate_command(CLI::App& app) {
+void add_evaluate_command(CLI::App& app, std::ostream& out) {
   CLI::App* command = app.add_subcommand(
       "evaluate", "Measure images against references: error, similarity, flicker");
   const auto options = std::make_shared<CommandOptions>();
   add_inputs(*command, *options);
   add_outputs(*command, *options);
-  command->callback([command, options] { run(*command, *options); });
+  command->callback([command, options, &out] { run(*command, *options, out); });
 }
 
 }  // namespace eigenlight

@@ -1,6 +1,7 @@
 // `eigenlight evaluate`: a sequence against its reference.
 #pragma once
 
+#include <iosfwd>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
@@ -12,9 +13,9 @@ class App;
 
 namespace eigenlight {
 
-/// Adds the sub-command, which measures when it is parsed, and prints a table or JSON. Errors leave
-/// it as std::runtime_error or std::invalid_argument.
-void add_evaluate_command(CLI::App& app);
+/// Adds the sub-command, which measures when it is parsed, and prints a table or JSON to `out`,
+/// which must outlive `app`. Errors leave it as std::runtime_error or std::invalid_argument.
+void add_evaluate_command(CLI::App& app, std::ostream& out);
 
 /// `frames` (how many were measured), `mean`, `young`, `old` (means over frames; young and old only
 /// if there are such pixels), `per_frame`, `skipped`, `bad_pixels`, and what the pixel sets come

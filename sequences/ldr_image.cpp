@@ -2,6 +2,7 @@
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
+#include <OpenImageIO/strutil.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -61,6 +62,11 @@ std::vector<unsigned char> encode_jpeg(const Plane<std::uint8_t>& rgb, int quali
         fmt::format("cannot encode a picture: {}", file ? file->geterror() : OIIO::geterror()));
   }
   return bytes;
+}
+
+std::string jpeg_data_uri(const std::vector<unsigned char>& jpeg) {
+  const OIIO::string_view bytes(reinterpret_cast<const char*>(jpeg.data()), jpeg.size());
+  return "data:image/jpeg;base64," + OIIO::Strutil::base64_encode(bytes);
 }
 
 }  // namespace eigenlight

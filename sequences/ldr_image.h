@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "frame/plane.h"
@@ -20,5 +21,8 @@ namespace eigenlight {
 /// A picture of 3 bytes a pixel (channels() == 3) as a JPEG file in memory. `quality` in [1, 100].
 /// Throws std::runtime_error if the encoder fails.
 [[nodiscard]] std::vector<unsigned char> encode_jpeg(const Plane<std::uint8_t>& rgb, int quality);
+
+/// A JPEG file as a data URI, for a page that needs no other file.
+[[nodiscard]] std::string jpeg_data_uri(const std::vector<unsigned char>& jpeg);
 
 }  // namespace eigenlight

@@ -1,0 +1,13 @@
+// The sources of the report page, from sequences/page/.
+#pragma once
+
+#include <string_view>
+
+namespace eigenlight {
+
+/// With {{title}}, {{css}}, {{js}} and {{data}} to be filled in.
+extern const std::string_view kPageHtml;
+extern const std::string_view kPageCss;
+extern const std::string_view kPageJs;
+
+}  // namespace eigenlight
