@@ -1,0 +1,124 @@
+#include "sequences/cli.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <new>
+#include <string>
+
+#include "sequences/checkpoint.h"
+#include "sequences/evaluate_command.h"
+#include "sequences/list_commands.h"
+#include "sequences/render_command.h"
+
+namespace eigenlight {
+namespace {
+
+constexpr int kFailed = 1;
+constexpr int kBadUsage = 2;
+
+void add_picture_options(CLI::App& command, RenderSettings& settings) {
+  command
+      .add_option("scene", settings.scene,
+                  "Built-in name (see `eigenlight scenes`), scene.json, .gltf, .glb or .obj")
+      ->required();
+  command.add_option("-o,--output", settings.directory, "Directory for frames, logs and page")
+      ->required();
+  command.add_option("--frames", settings.frames, "Such as 7, 0-47, 5-1, 1-100x5 or 1-9,20")
+      ->capture_default_str();
+  command.add_option("--size", settings.size, "Width and height in pixels")->capture_default_str();
+  command.add_option("--spp", settings.spp,
+                     "Samples of indirect light per pixel [3; reference: 512]");
+  command.add_option("--bounces", settings.bounces, "Bounces of indirect light")
+      ->capture_default_str();
+  command.add_option("--seed", settings.seed, "Other seeds, other noise")->capture_default_str();
+  command.add_option("--perturb", settings.perturb, "What moves: none, lights, objects, all")
+      ->capture_default_str();
+  command.add_flag("--environment", settings.environment,
+                   "Environment map of a scene.json in place of its suns and sky");
+}
+
+void add_run_options(CLI::App& command, RenderSettings& settings) {
+  command.add_option("--method", settings.method,
+                     fmt::format("See `eigenlight methods` [{}]", default_method()));
+  command.add_option("--bases", settings.bases, "Bases per pixel, 1 to 8")->capture_default_str();
+  command.add_option("--layers", settings.layers,
+                     "Layers to write, with commas [all]: " + format_layers(parse_layers("")));
+  command.add_option("--threads", settings.threads, "0: one per core")->capture_default_str();
+  command.add_flag("--resume", settings.resume, "Go on where an interrupted run stopped");
+  command.add_flag("-q,--quiet", settings.quiet, "Print errors only");
+  command.add_flag("--json", settings.json, "Print the summary as JSON");
+}
+
+// CLI11 explains over several lines at times; one is enough.
+std::string one_line(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  text.erase(text.find_last_not_of(' ') + 1);
+  return text;
+}
+
+int parse_and_run(std::span<const char* const> args, const Console& console) {
+  CLI::App app("Temporal denoising of path-traced indirect light", "eigenlight");
+  app.set_version_flag("--version", "eigenlight " EIGENLIGHT_VERSION);
+  app.require_subcommand(1);
+  RenderSettings settings;
+  CLI::App* render = app.add_subcommand("render", "Render and denoise a flythrough");
+  add_picture_options(*render, settings);
+  add_run_options(*render, settings);
+  const CLI::App* scenes = app.add_subcommand("scenes", "List the built-in scenes");
+  const CLI::App* methods = app.add_subcommand("methods", "List the methods");
+  add_evaluate_command(app, console.out);
+  try {
+    app.parse(static_cast<int>(args.size()), args.data());
+  } catch (const CLI::Success& help_or_version) {
+    return app.exit(help_or_version, console.out, console.err);
+  } catch (const CLI::ParseError& error) {
+    console.err << fmt::format("eigenlight: {}; see eigenlight --help\n", one_line(error.what()));
+    return kBadUsage;
+  }
+  if (scenes->parsed()) list_scenes(console.out);
+  if (methods->parsed()) list_methods(console.out);
+  return render->parsed() ? render_command(settings, console) : 0;
+}
+
+}  // namespace
+
+std::string quote_for_shell(const std::string& word) {
+  constexpr std::string_view kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=.,:/@%";
+  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+  std::string quoted = "'";
+  for (const char c : word) {
+    if (c == '\'') {
+      quoted += "'\\''";
+    } else {
+      quoted += c;
+    }
+  }
+  return quoted + "'";
+}
+
+int run_command_line(std::span<const char* const> args, Console console) {
+  for (const char* word : args) {
+    if (!console.command_line.empty()) console.command_line += ' ';
+    console.command_line += quote_for_shell(word);
+  }
+  const auto fail = [&](const std::string& what, int status) {
+    console.err << "eigenlight: " << one_line(what) << '\n' << std::flush;
+    return status;
+  };
+  try {
+    return parse_and_run(args, console);
+  } catch (const std::invalid_argument& error) {
+    return fail(error.what(), kBadUsage);
+  } catch (const CheckpointError& error) {
+    return fail(error.what(), kBadUsage);
+  } catch (const std::bad_alloc&) {
+    return fail("out of memory", kFailed);
+  } catch (const std::exception& error) {
+    return fail(error.what(), kFailed);
+  }
+}
+
+}  // namespace eigenlight

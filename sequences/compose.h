@@ -1,0 +1,14 @@
+// Albedo and light back together.
+#pragma once
+
+#include "frame/frame.h"
+
+namespace eigenlight {
+
+/// out = albedo * light, per pixel and channel. Throws std::invalid_argument if extents differ.
+void modulate(const Planes<3>& albedo, const Planes<3>& light, Planes<3>& out);
+
+/// out = albedo * (direct + indirect) + emission of `frame`, with `indirect` in place of its own.
+void compose(const Frame& frame, const Planes<3>& indirect, Planes<3>& out);
+
+}  // namespace eigenlight

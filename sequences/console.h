@@ -1,0 +1,20 @@
+// Where a command speaks to.
+#pragma once
+
+#include <ostream>
+#include <string>
+
+namespace eigenlight {
+
+struct Console {
+  std::ostream& out;  ///< results
+  std::ostream& err;  ///< progress, notes, errors
+  bool err_is_terminal = false;
+  std::string
+      command_line;  ///< what the user typed, quoted for a shell (filled by run_command_line)
+};
+
+/// Words of a command line as a POSIX shell reads them back.
+[[nodiscard]] std::string quote_for_shell(const std::string& word);
+
+}  // namespace eigenlight
