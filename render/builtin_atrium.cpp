@@ -132,7 +132,7 @@ Scene make_atrium() {
 
   scene.lights.suns.push_back({glm::normalize(glm::vec3(0.26f, 1.0f, -0.17f)), {50, 45, 36}});
   scene.lights.sky = {3.0f, 4.0f, 5.5f};
-  scene.exposure = 1.3f;
+  scene.exposure = 0.45f;
   scene.fov_y = 50.0f;
   // Along the court, around the fountain, through an open arch and back along the gallery.
   scene.camera_path = {{0.0f, {-9.4f, 1.7f, -0.4f}, {0.0f, 2.9f, 0.3f}},

@@ -12,7 +12,7 @@ namespace {
 constexpr float kWallX = 8.0f, kWallZ = 4.0f, kHeight = 5.0f, kThick = 0.3f;
 constexpr float kRedX0 = kWallX + kThick, kRedX1 = 15.5f, kRedHeight = 4.2f;
 constexpr float kDoorZ0 = 0.6f, kDoorZ1 = 2.4f, kDoorHeight = 2.9f;
-constexpr float kSkylightX0 = 1.6f, kSkylightX1 = 5.4f, kSkylightZ = 1.0f, kWellTop = 6.1f;
+constexpr float kSkylightX0 = 1.6f, kSkylightX1 = 5.4f, kSkylightZ = 1.0f, kWellTop = 5.6f;
 
 struct Materials {
   int cream, ceiling, red, parquet, carpet, wood, gold, stone;
@@ -93,7 +93,7 @@ void add_skylights(Scene& scene, const Materials& m) {
     const float inner = side * kSkylightX1, outer = side * kWallX;
     builder.box({std::min(inner, outer), kHeight, -kSkylightZ},
                 {std::max(inner, outer), kWellTop, kSkylightZ});
-    scene.lights.rects.push_back({{side * 0.5f * (kSkylightX0 + kSkylightX1), 5.7f, 0.0f},
+    scene.lights.rects.push_back({{side * 0.5f * (kSkylightX0 + kSkylightX1), 5.1f, 0.0f},
                                   {1.8f, 0, 0},
                                   {0, 0, 0.85f},
                                   {15.0f, 15.5f, 17.0f}});
