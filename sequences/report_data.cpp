@@ -72,7 +72,9 @@ T total(const std::vector<T>& values) {
 
 Json stages_of(const std::vector<Record>& lines) {
   Json stages = Json::array();
-  for (const auto& [name, time] : field<Json>(lines.front(), "/stages").items()) {
+  // Named, because items() does not keep a temporary alive.
+  const Json first = field<Json>(lines.front(), "/stages");
+  for (const auto& [name, time] : first.items()) {
     const auto wall = column<double>(lines, "/stages/" + name + "/wall_ms");
     const auto cpu = column<double>(lines, "/stages/" + name + "/cpu_ms");
     if (total(wall) == 0.0 && total(cpu) == 0.0) continue;
