@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -270,6 +271,69 @@ TEST(PathTracer, EmissionSeenByTheFirstBounceIsDirectAndCountedOnce) {
   const Frame frame = render_still(scene, down(extent), options(extent, 256));
   EXPECT_NEAR(test::mean(frame.direct).x, 1.0, 0.01);
   EXPECT_EQ(test::mean(frame.indirect).x, 0.0);  // the ceiling sees only black and itself
+}
+
+// Any scene of albedo a under lights of radiance at most L: direct <= L, indirect <= a / (1 - a) L.
+TEST(PathTracer, LightNeverExceedsTheBoundOfTheFurnace) {
+  Scene scene;
+  const float albedo = 0.7f;
+  const int wall = add_material(scene, glm::vec3(albedo));
+  add_floor(scene, wall, 2.0f);
+  test::add_quad(scene, wall, {glm::vec3(-2, 0, 1), glm::vec3(4, 0, 0), glm::vec3(0, 2, 0.3f)});
+  test::add_quad(scene, wall, {glm::vec3(1, 0, -2), glm::vec3(0, 0, 4), glm::vec3(0.3f, 1, 0)});
+  scene.lights.sky = glm::vec3(1.0f);
+  scene.lights.rects = {{{0, 1.5f, 0}, {0.5f, 0, 0}, {0, 0, 0.5f}, glm::vec3(1.0f)}};
+  const Extent extent{24, 24};
+  RenderOptions o = options(extent, 256);
+  o.bounces = 32;
+  const Frame frame =
+      render_still(scene, look_at({0, 1, -2}, {0, 0.5f, 1}, {0, 1, 0}, 60, extent), o);
+  double brightest = 0.0;
+  for (int y = 0; y < extent.height; ++y) {
+    for (int x = 0; x < extent.width; ++x) {
+      EXPECT_LE(at(frame.direct, 0, x, y), 1.05f);
+      EXPECT_LE(at(frame.indirect, 0, x, y), 1.05f * albedo / (1.0f - albedo));
+      brightest = std::max(brightest, static_cast<double>(at(frame.indirect, 0, x, y)));
+    }
+  }
+  EXPECT_GT(brightest, 0.1);
+}
+
+// A sun overhead through a sheet whose right half is a hole.
+TEST(PathTracer, HolesLetLightThrough) {
+  Scene scene;
+  add_floor(scene, add_material(scene, glm::vec3(0.5f)), 5.0f);
+  const int leaf = add_material(scene, glm::vec3(0.0f));
+  scene.textures.push_back({"half", {8, 8}, std::vector<std::uint8_t>(256, 255)});
+  for (std::size_t i = 0; i < 64; ++i) {
+    if (i % 8 >= 4) scene.textures[0].rgba[4 * i + 3] = 0;
+  }
+  scene.materials[static_cast<std::size_t>(leaf)].texture = 0;
+  scene.materials[static_cast<std::size_t>(leaf)].alpha_cutoff = 0.5f;
+  test::add_quad(scene, leaf, {glm::vec3(-2, 1, -2), glm::vec3(4, 0, 0), glm::vec3(0, 0, 4)});
+  scene.lights.suns = {{{0, 1, 0}, glm::vec3(1.0f), 0.0f}};
+  const Extent extent{2, 1};
+  const Frame frame = render_still(scene, down(extent), options(extent, 4));
+  for (int x = 0; x < 2; ++x) {
+    const bool shaded = at(frame.position, 0, x, 0) < 0.0f;
+    EXPECT_FLOAT_EQ(at(frame.direct, 0, x, 0), shaded ? 0.0f : 1.0f / static_cast<float>(kPi));
+  }
+}
+
+TEST(PathTracer, ThinGlassTintsLightAndIsNotSeen) {
+  Scene scene;
+  const int floor = add_floor(scene, add_material(scene, glm::vec3(0.5f)), 5.0f);
+  const int glass = add_material(scene, {0.5f, 0.25f, 1.0f});
+  scene.materials[static_cast<std::size_t>(glass)].thin_glass = true;
+  add_floor(scene, glass, 50.0f, 0.2f);  // between camera and floor
+  scene.lights.sky = glm::vec3(2.0f);
+  const Extent extent{4, 4};
+  const Frame frame = render_still(scene, down(extent), options(extent, 16));
+  EXPECT_EQ(frame.surface.id(1, 1), static_cast<std::uint32_t>(floor) + 1U);
+  EXPECT_FLOAT_EQ(at(frame.surface.albedo, 1, 1, 1), 0.5f);
+  EXPECT_NEAR(test::mean(frame.direct).x, 1.0, 0.02);
+  EXPECT_NEAR(test::mean(frame.direct).y, 0.5, 0.01);
+  EXPECT_NEAR(test::mean(frame.direct).z, 2.0, 0.04);
 }
 
 }  // namespace
