@@ -73,6 +73,14 @@ int parse_and_run(std::span<const char* const> args, const Console& console) {
     app.parse(static_cast<int>(args.size()), args.data());
   } catch (const CLI::Success& help_or_version) {
     return app.exit(help_or_version, console.out, console.err);
+  } catch (const CLI::RequiredError& error) {
+    // Of a word that is no command CLI11 only says that a command is missing.
+    const bool names_none = app.get_subcommands().empty();
+    const std::string what = names_none && args.size() > 1
+                                 ? fmt::format("unknown command '{}'", args[1])
+                                 : one_line(error.what());
+    console.err << fmt::format("eigenlight: {}; see eigenlight --help\n", what);
+    return kBadUsage;
   } catch (const CLI::ParseError& error) {
     console.err << fmt::format("eigenlight: {}; see eigenlight --help\n", one_line(error.what()));
     return kBadUsage;

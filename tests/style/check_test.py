@@ -1,0 +1,56 @@
+#!/usr/bin/env python3
+"""Each fault that check.py is there for is found in a tree that has it, and no other."""
+
+import pathlib
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+import check  # noqa: E402
+
+GOOD = {
+    "frame/plane.h": "#pragma once\n",
+    "temporal/mean.cpp": '#include "frame/plane.h"\n#include "temporal/mean.h"\n#include <vector>\n',
+    "temporal/mean.h": "#pragma once\n",
+    "spatial/blur_simd.cpp": "#include <hwy/highway.h>\n",
+    "CMakeLists.txt": "# never -ffast-math\n",
+}
+
+
+class CheckTest(unittest.TestCase):
+    def faults_with(self, name, text):
+        with tempfile.TemporaryDirectory() as directory:
+            root = pathlib.Path(directory)
+            for path, content in {**GOOD, name: text}.items():
+                (root / path).parent.mkdir(parents=True, exist_ok=True)
+                (root / path).write_text(content)
+            return [f for f in check.faults(root) if "not formatted" not in f]
+
+    def test_a_good_tree_has_no_faults(self):
+        self.assertEqual(self.faults_with("frame/plane.cpp", '#include "frame/plane.h"\n'), [])
+
+    def test_each_fault_is_found(self):
+        cases = [
+            ("temporal/x.cpp", '#include "render/scene.h"\n', "temporal/ must not include render/"),
+            ("frame/x.cpp", '#include "spatial/blur.h"\n', "frame/ must not include spatial/"),
+            ("spatial/x.cpp", '#include "temporal/mean.h"\n', "spatial/ must not include temporal/"),
+            ("frame/x.cpp", '#include "plane.h"\n', "does not start at the root"),
+            ("spatial/x.cpp", "#include <tbb/parallel_for.h>\n", "belongs in frame/tiles.cpp only"),
+            ("render/x.cpp", "#include <embree3/rtcore.h>\n", "belongs in render/embree_scene.*"),
+            ("render/x.cpp", "#include <nlohmann/json.hpp>\n", "belongs in sequences/*"),
+            ("spatial/x.cpp", "#include <hwy/highway.h>\n", "belongs in *_simd.cpp only"),
+            ("sequences/x.cpp", "#include <OpenImageIO/imageio.h>\n", "belongs in"),
+            ("frame/x.cpp", "\n" * 401, "longer than 400 lines"),
+            ("frame/x.h", "\n", "no #pragma once"),
+            ("frame/CMakeLists.txt", "add_compile_options(-march=native)\n", "changes floating"),
+        ]
+        for name, text, message in cases:
+            with self.subTest(name=name, message=message):
+                found = self.faults_with(name, text)
+                self.assertEqual(len(found), 1, found)
+                self.assertIn(message, found[0])
+
+
+if __name__ == "__main__":
+    unittest.main()
