@@ -69,9 +69,12 @@ Texture read_texture(const std::filesystem::path& path) {
 }
 
 Texture read_texture(std::span<const std::uint8_t> bytes, const std::string& name) {
-  const OIIO::ImageSpec config = unassociated();
+  OIIO::ImageSpec config = unassociated();
   OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(bytes.data()), bytes.size());
-  const InputPtr input = OIIO::ImageInput::open(name, &config, &memory);
+  // OpenImageIO 2.4 loses the proxy that open() is given beside a configuration.
+  OIIO::Filesystem::IOProxy* proxy = &memory;
+  config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+  const InputPtr input = OIIO::ImageInput::open(name, &config);
   if (!input) fail(name, OIIO::geterror());
   return to_texture(*input, name);
 }

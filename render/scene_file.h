@@ -22,7 +22,8 @@ struct SceneFileOptions {
 ///
 /// Base color is the factor times the texture; metals are Lambertian in their base color. Alpha
 /// masks and blends are holes where alpha is under the cutoff (a half unless the file says so).
-/// Meshes without a usable triangle and triangles with NaN or Inf are dropped. A texture that
+/// Triangles with NaN or Inf are dropped, and so are meshes in which no triangle is more than a
+/// point. A texture that
 /// cannot be read is replaced by grey and counted in Scene::missing_textures. `notes` gets one line
 /// for each of these, and for whatever a bare model was given.
 ///

@@ -96,10 +96,11 @@ Mesh read_mesh(const aiMesh& from, unsigned uv_channel, std::vector<std::string>
   return mesh;
 }
 
-bool has_area(const Mesh& mesh) {
+/// Triangles without area are kept, as no ray meets them; a mesh that is a single point is nothing.
+bool has_extent(const Mesh& mesh) {
   return std::any_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const glm::uvec3& t) {
-    const glm::vec3 normal = area_normal(mesh, t);
-    return dot(normal, normal) > 0.0f;
+    const glm::vec3& a = mesh.positions[t.x];
+    return mesh.positions[t.y] != a || mesh.positions[t.z] != a;
   });
 }
 
@@ -139,8 +140,9 @@ void load_model(const std::filesystem::path& path, Scene& scene, std::vector<std
   for (unsigned i = 0; i < model->mNumMeshes; ++i) {
     const unsigned material = model->mMeshes[i]->mMaterialIndex;
     Mesh mesh = read_mesh(*model->mMeshes[i], uv_channels[material], notes);
-    if (!has_area(mesh)) {
-      notes.push_back(fmt::format("mesh \"{}\": no triangle with an area, dropped", mesh.name));
+    if (!has_extent(mesh)) {
+      notes.push_back(
+          fmt::format("mesh \"{}\": no triangle that is more than a point, dropped", mesh.name));
       continue;
     }
     mesh.material = first_material + static_cast<int>(material);
