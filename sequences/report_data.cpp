@@ -133,8 +133,10 @@ Json summary_of(const Record& run, const std::vector<Record>& lines) {
   };
   row("scene", field<std::string>(run, "/scene"));
   row("perturbation", field<std::string>(run, "/perturb"));
-  row("method", fmt::format("{}, up to {} bases", field<std::string>(run, "/method"),
-                            field<int>(run, "/bases")));
+  row("method", field<std::string>(run, "/method"));
+  if (total(column<double>(lines, "/rank")) > 0.0) {
+    row("bases", fmt::format("up to {}", field<int>(run, "/bases")));
+  }
   row("size", fmt::format("{} × {} pixels", field<int>(run, "/width"), field<int>(run, "/height")));
   row("frames", fmt::format("{} of {} ({})", lines.size(), field<int>(run, "/frame_count"),
                             field<std::string>(run, "/frames")));
@@ -172,6 +174,7 @@ ReportData read_report_data(const std::filesystem::path& dir) {
                {"pixels", field<std::int64_t>(run, "/width") * field<std::int64_t>(run, "/height")},
                {"summary", summary_of(run, lines)},
                {"frames", data.frames},
+               {"cut", column<bool>(lines, "/cut")},
                {"stages", stages_of(lines)},
                {"new_share", new_shares(lines)},
                {"rank", ranks(lines)},

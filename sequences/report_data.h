@@ -14,8 +14,8 @@ struct ReportData {
   float exposure = 1.0f;
   float frames_per_second = 24.0f;
   /// For the page's script: subtitle, method, pixels of a frame, summary [[name, value]], frames,
-  /// stages [{name, wall_ms, cpu_ms}], new_share, rank, skips [{name, pixels}]; one value a frame,
-  /// null where a frame without surface has none. Stages that never took time are left out.
+  /// cut, stages [{name, wall_ms, cpu_ms}], new_share, rank, skips [{name, pixels}]; one value a
+  /// frame, null where a frame without surface has none. Stages that never took time are left out.
   nlohmann::ordered_json page;
 };
 

@@ -20,7 +20,7 @@ function mean(values) {
 // ---- player
 
 const pictures = data.pictures;
-const player = { shown: 0, kind: null, split: 0.5, playing: false, images: new Map() };
+const player = { shown: 0, kind: null, split: 0.5, playing: false, timer: 0, images: new Map() };
 
 function image(uri) {
   if (!uri) return null;
@@ -80,18 +80,18 @@ function setPlaying(playing) {
   const button = byId("play");
   button.setAttribute("aria-label", player.playing ? "Pause" : "Play");
   button.querySelector("path").setAttribute("d", player.playing ? "M3 2h4v12H3zM9 2h4v12H9z" : "M4 2l10 6-10 6z");
-  if (player.playing) requestAnimationFrame(startTicking);
+  clearInterval(player.timer);
+  if (player.playing) startTicking();
 }
 
-function startTicking(start) {
+// Frames are due by the clock: a slow browser skips some and keeps the pace.
+function startTicking() {
   const first = player.shown;
-  const step = (now) => {
-    if (!player.playing) return;
-    const due = (first + Math.floor(((now - start) / 1000) * pictures.fps)) % pictures.frames.length;
+  const start = performance.now();
+  player.timer = setInterval(() => {
+    const due = (first + Math.floor(((performance.now() - start) / 1000) * pictures.fps)) % pictures.frames.length;
     if (due !== player.shown) show(due);
-    requestAnimationFrame(step);
-  };
-  step(start);
+  }, 500 / pictures.fps);
 }
 
 function stepBy(count) {
@@ -313,7 +313,8 @@ function paintTimes(plot) {
   const totals = data.frames.map((_, i) => stages.reduce((sum, s) => sum + (s.wall_ms[i] || 0), 0));
   plot.max = Math.max(...totals) || 1;
   axes(plot, data.frames);
-  const bar = Math.min(48, Math.max(plot.pitch * 0.9, plot.pitch - 2));
+  // Thin bars touch, so that no pattern of gaps shows.
+  const bar = plot.pitch < 6 ? plot.pitch + 0.5 : Math.min(48, plot.pitch - 2);
   const bases = data.frames.map(() => 0);
   for (const stage of stages) {
     const outline = data.frames.map((_, i) => {
@@ -331,17 +332,19 @@ function describeTimes(index) {
   return [...stages.map((s) => `${s.name} ${number(s.wall_ms[index])} ms`), `all ${number(total)} ms`].join("\n");
 }
 
-// A curve with gaps where a frame has no value; a lone value is a dot.
+// A curve with gaps where a frame has no value; a lone value is a dot. Cuts do not set the scale.
 function paintCurve(plot, values) {
-  plot.max = Math.max(...values.filter((v) => v !== null)) || 1;
-  if (!Number.isFinite(plot.max)) plot.max = 1;
+  const known = values.filter((v) => v !== null);
+  const scaling = values.filter((v, i) => v !== null && !data.cut[i]);
+  plot.max = Math.max(...(scaling.length ? scaling : known), 0) || 1;
   axes(plot, data.frames);
   let path = "";
   values.forEach((value, i) => {
     if (value === null) return;
     const joined = i > 0 && values[i - 1] !== null;
-    path += `${joined ? "L" : "M"}${plot.x(i).toFixed(1)} ${plot.y(value).toFixed(1)}`;
-    if (values.length <= 60) plot.svg.append(svg("circle", { class: "dot", r: 3, cx: plot.x(i), cy: plot.y(value) }));
+    const y = plot.y(Math.min(value, plot.max));
+    path += `${joined ? "L" : "M"}${plot.x(i).toFixed(1)} ${y.toFixed(1)}`;
+    if (values.length <= 60) plot.svg.append(svg("circle", { class: "dot", r: 3, cx: plot.x(i), cy: y }));
   });
   plot.svg.append(svg("path", { class: "curve", d: path }));
 }
@@ -358,7 +361,8 @@ function startPlots() {
   newPlot("plot-new", "Share of new pixels over the frames, in percent", (p) => paintCurve(p, share), (i) => `${number(share[i])} %`);
   newPlot("plot-rank", "Mean rank over the frames", (p) => paintCurve(p, data.rank), (i) => `rank ${number(data.rank[i])}`);
   byId("with-rendering").addEventListener("change", paintAll);
-  new ResizeObserver(paintAll).observe(document.querySelector("main"));
+  paintAll();
+  addEventListener("resize", () => requestAnimationFrame(paintAll));
 }
 
 fillTables();
