@@ -80,7 +80,7 @@ OIIO::ImageSpec make_spec(std::span<const ExrChannel> channels,
     spec.channelnames.push_back(channel.name);
     spec.channelformats.push_back(type_of(channel.type));
   }
-  // Level 4 of 9 packs renders within 2 % of the default level 6 at about half its time.
+  // Level 4 of 9 against 6: files 1 % larger in 22 % less time (atrium, 640x360, all layers).
   spec.attribute("compression", "zip:4");
   // Else OpenImageIO writes the time of day, and the same frame would not be the same bytes.
   spec.attribute("DateTime", "");
