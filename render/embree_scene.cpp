@@ -135,9 +135,8 @@ EmbreeScene::Impl::Impl(const Scene& s, std::size_t moving_count) : scene(&s) {
   EL_CHECK(moving_count <= s.instances.size(), "{} moving instances: the scene has {}",
            moving_count, s.instances.size());
   first_moving = s.instances.size() - moving_count;
-  // One thread builds: with more, the order inside a leaf, and so the winner among coincident
-  // triangles, could depend on their number.
-  device.reset(rtcNewDevice("threads=1"));
+  // No thread count: Embree would impose it on every TBB loop of the process.
+  device.reset(rtcNewDevice(nullptr));
   if (!device) throw std::runtime_error("Embree: could not make a device");
   for (const Mesh& mesh : s.meshes) {
     const Material& material = s.materials[index(mesh.material)];
@@ -145,9 +144,8 @@ EmbreeScene::Impl::Impl(const Scene& s, std::size_t moving_count) : scene(&s) {
     looks.push_back({&mesh, &material, textured ? &s.textures[index(material.texture)] : nullptr});
   }
   mesh_scenes.resize(s.meshes.size());
-  still.scene = make_scene(RTC_BUILD_QUALITY_HIGH);
+  still.scene = make_scene(RTC_BUILD_QUALITY_MEDIUM);
   moving.scene = make_scene(RTC_BUILD_QUALITY_LOW);
-  // Splitting triangles would let a ray meet one pane twice; only high quality does that.
   glass.scene = make_scene(RTC_BUILD_QUALITY_MEDIUM);
   std::vector<std::size_t> uses(s.meshes.size(), 0);
   for (const Instance& instance : s.instances) ++uses[index(instance.mesh)];
@@ -157,6 +155,8 @@ EmbreeScene::Impl::Impl(const Scene& s, std::size_t moving_count) : scene(&s) {
   for (Group* group : {&still, &moving, &glass}) commit(*group);
 }
 
+// High quality would do nothing here: Embree 3.13 splits no triangles of robust scenes (and then a
+// ray could meet one pane twice).
 SceneHandle EmbreeScene::Impl::make_scene(RTCBuildQuality quality) const {
   SceneHandle handle(rtcNewScene(device.get()));
   rtcSetSceneFlags(handle.get(), RTC_SCENE_FLAG_ROBUST);  // no ray slips through a shared edge
@@ -193,7 +193,7 @@ Geometry EmbreeScene::Impl::make_triangles(int mesh, const glm::mat4& transform,
 Geometry EmbreeScene::Impl::make_instance(int mesh, const glm::mat4& transform, bool glass_pane) {
   SceneHandle& shared = mesh_scenes[index(mesh)];
   if (!shared) {
-    shared = make_scene(glass_pane ? RTC_BUILD_QUALITY_MEDIUM : RTC_BUILD_QUALITY_HIGH);
+    shared = make_scene(RTC_BUILD_QUALITY_MEDIUM);
     const Geometry triangles = make_triangles(mesh, glm::mat4(1.0f), glass_pane);
     rtcCommitGeometry(triangles.get());
     rtcAttachGeometry(shared.get(), triangles.get());

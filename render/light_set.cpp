@@ -46,7 +46,11 @@ void divide(std::optional<LightSample>& sample, float chance) {
 }  // namespace
 
 LightSet::LightSet(const Scene& scene, const EmbreeScene& geometry)
-    : scene_(&scene), geometry_(&geometry), environment_(scene.environment) {}
+    : scene_(&scene), geometry_(&geometry), environment_(scene.environment) {
+  for (const Material& material : scene.materials) {
+    if (material.emission != glm::vec3(0.0f)) has_emissive_materials_ = true;
+  }
+}
 
 void LightSet::update(const Lights& lights) {
   lights_ = lights;
@@ -89,7 +93,13 @@ bool LightSet::has_local() const {
          !lights_.spheres.empty();
 }
 
-bool LightSet::is_visible() const { return has_local() || luminance(lights_.sky) > 0.0f; }
+bool LightSet::has_visible_surfaces() const {
+  return has_emissive_materials_ || !lights_.rects.empty() || !lights_.spheres.empty();
+}
+
+bool LightSet::is_visible() const {
+  return has_visible_surfaces() || !environment_.is_black() || lights_.sky != glm::vec3(0.0f);
+}
 
 std::optional<LightSample> LightSet::sample_sun(const glm::vec3& normal, const glm::vec2& u) const {
   float total = 0.0f;

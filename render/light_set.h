@@ -50,6 +50,8 @@ class LightSet {
 
   /// Whether rays that are not aimed at lights can meet light: all but suns.
   [[nodiscard]] bool is_visible() const;
+  /// Whether some of that light comes from surfaces: a ray must know what it met, not only whether.
+  [[nodiscard]] bool has_visible_surfaces() const;
   /// Sky and environment, for guide rays.
   [[nodiscard]] glm::vec3 escaped(const glm::vec3& direction) const;
   /// The same for a ray from `from` of density `pdf`, each part times its weight against
@@ -85,6 +87,7 @@ class LightSet {
   const EmbreeScene* geometry_;
   EnvironmentLight environment_;
   EmitterTable emitters_;
+  bool has_emissive_materials_ = false;   // also of those that emitters_ leaves out
   std::vector<glm::mat4> emitter_poses_;  // that emitters_ was made for
   Lights lights_;
 };

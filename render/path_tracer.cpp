@@ -69,6 +69,20 @@ glm::vec3 PathTracer::seen(const Bounce& bounce) const {
          lights.emitted(emission, bounce.ray.direction);
 }
 
+// What a ray sees of lights when nothing will be done with the surface that it meets. Where only
+// the sky shines, whether there is a surface is enough, at a third of the cost.
+glm::vec3 PathTracer::look_for_lights(Bounce& bounce, std::int64_t& rays) const {
+  if (!world_.lights.is_visible()) return glm::vec3(0.0f);
+  if (world_.lights.has_visible_surfaces()) {
+    trace(bounce, rays);
+  } else {
+    ++rays;
+    if (world_.geometry.occluded(bounce.ray)) return glm::vec3(0.0f);
+    bounce.tint = world_.geometry.glass_tint(bounce.ray);
+  }
+  return bounce.tint * seen(bounce);
+}
+
 glm::vec3 PathTracer::shadowed(const SurfacePoint& point, const LightSample& sample,
                                float weight_against, std::int64_t& rays) const {
   const float cosine = glm::dot(sample.direction, point.normal);
@@ -101,25 +115,25 @@ glm::vec3 PathTracer::direct(const SurfacePoint& point, Sampler& sampler,
                              std::int64_t& rays) const {
   Bounce bounce;
   const bool above = sample_ray(point, sampler, bounce);
-  glm::vec3 sum = aim(point, sampler, rays);
-  if (!above || !world_.lights.is_visible()) return sum;
-  trace(bounce, rays);
-  return sum + bounce.tint * seen(bounce);
+  const glm::vec3 sum = aim(point, sampler, rays);
+  return above ? sum + look_for_lights(bounce, rays) : sum;
 }
 
 glm::vec3 PathTracer::indirect(const SurfacePoint& point, Sampler& sampler,
                                std::int64_t& rays) const {
   glm::vec3 sum(0.0f), throughput(1.0f);
   SurfacePoint at = point;
-  for (int depth = 0; depth <= bounces_; ++depth) {
-    // The ray beyond the last bounce only looks for lights.
-    if (depth == bounces_ && !world_.lights.is_visible()) break;
+  for (int depth = 0;; ++depth) {
     Bounce bounce;
     if (!sample_ray(at, sampler, bounce)) break;
+    if (depth == bounces_) {  // the light that the last surface reflects
+      sum += throughput * look_for_lights(bounce, rays);
+      break;
+    }
     trace(bounce, rays);
     throughput *= bounce.tint;
     if (depth > 0) sum += throughput * seen(bounce);  // at depth 0 it is direct light
-    if (!bounce.hit || depth == bounces_) break;
+    if (!bounce.hit) break;
     at = world_.surfaces.bounce_point(bounce.ray, *bounce.hit);
     throughput *= at.albedo;
     sum += throughput * aim(at, sampler, rays);

@@ -44,6 +44,7 @@ class PathTracer {
                                    float weight_against, std::int64_t& rays) const;
   [[nodiscard]] bool sample_ray(const SurfacePoint& point, Sampler& sampler, Bounce& bounce) const;
   void trace(Bounce& bounce, std::int64_t& rays) const;
+  [[nodiscard]] glm::vec3 look_for_lights(Bounce& bounce, std::int64_t& rays) const;
   [[nodiscard]] glm::vec3 seen(const Bounce& bounce) const;
 
   World world_;

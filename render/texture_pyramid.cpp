@@ -23,10 +23,20 @@ const std::array<float, 256>& linear_table() {
   return table;
 }
 
+// Inverse, by table: 65536 steps of linear light are 20 to the code where the curve is steepest.
 std::uint32_t linear_to_byte(float linear) {
-  const float s =
-      linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f;
-  return static_cast<std::uint32_t>(std::clamp(s, 0.0f, 1.0f) * 255.0f + 0.5f);
+  static const std::vector<std::uint8_t> table = [] {
+    std::vector<std::uint8_t> t(65536);
+    const auto& codes = linear_table();
+    std::size_t code = 0;
+    for (std::size_t i = 0; i < t.size(); ++i) {
+      const float value = static_cast<float>(i) / 65535.0f;
+      while (code < 255 && value > 0.5f * (codes[code] + codes[code + 1])) ++code;
+      t[i] = static_cast<std::uint8_t>(code);
+    }
+    return t;
+  }();
+  return table[static_cast<std::size_t>(std::clamp(linear, 0.0f, 1.0f) * 65535.0f + 0.5f)];
 }
 
 glm::vec3 decode(std::uint32_t texel) {
