@@ -17,7 +17,8 @@ std::unique_ptr<Denoiser> make(const DenoiserOptions& options) {
 
 const std::vector<Method>& methods() {
   static const std::vector<Method> kMethods{
-      {"eigenlight", "tiled incremental PCA, leave-one-out coefficients, innovation test, resampling",
+      {"eigenlight",
+       "tiled incremental PCA, leave-one-out coefficients, innovation test, resampling",
        "after Chen 2012", make<EigenDenoiser>},
       {"noisy", "the frames as they are rendered", "", make<PassThrough>},
   };
