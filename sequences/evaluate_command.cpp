@@ -37,7 +37,7 @@ Json to_json(const FrameFigures& frame) {
 }
 
 std::string cell(const std::optional<double>& value) {
-  return fmt::format("{:>12}", value ? fmt::format("{:.6g}", *value) : "-");
+  return fmt::format("{:>14}", value ? fmt::format("{:.6g}", *value) : "-");
 }
 
 struct CommandOptions {
@@ -122,9 +122,9 @@ std::string to_table(const Evaluation& evaluation) {
   std::string text =
       fmt::format("{} frames; surface from {}", evaluation.frames.size(), evaluation.surface_from);
   if (!evaluation.age_from.empty()) text += fmt::format("; ages from {}", evaluation.age_from);
-  text += fmt::format("\n\n{:<24}{:>12}{:>12}{:>12}\n", "", "all", "young", "old");
+  text += fmt::format("\n\n{:<24}{:>14}{:>14}{:>14}\n", "", "all", "young", "old");
   text += fmt::format("{:<24}", "pixels");
-  for (const Figures& set : evaluation.mean) text += fmt::format("{:>12}", set.pixels);
+  for (const Figures& set : evaluation.mean) text += fmt::format("{:>14}", set.pixels);
   text += '\n';
   for (std::size_t m = 0; m < kMetricCount; ++m) {
     if (!evaluation.mean[0].values[m]) continue;
