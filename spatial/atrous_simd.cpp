@@ -25,17 +25,6 @@ VF Luminance(VF r, VF g, VF b) {
                     hn::MulAdd(hn::Set(d, 0.7152f), g, hn::Mul(hn::Set(d, 0.0722f), b)));
 }
 
-// What one row of output pixels compares its neighbors with, and what it has gathered of them.
-struct Row {
-  alignas(64) Line normal[3];
-  alignas(64) Line plane_x, plane_y, plane_c;  // N . ray(x, y) = plane_x x + plane_y y + plane_c
-  alignas(64) Line plane;                      // N . (X - eye)
-  alignas(64) Line plane_scale;                // 1 / (8 plane_distance depth)
-  alignas(64) Line luminance;
-  alignas(64) Line luminance_scale;  // 1 / (8 (sigmas sigma + 1e-4 luminance))
-  alignas(64) Line sum[3], weight, variance;
-};
-
 // Variance of luminance around the pixels [x0, x0 + count) of row y: 3 x 3 binomial, edges
 // repeated.
 void SmoothVariance(const Plane<float>& variance, int x0, int count, int y, float* out) {
@@ -52,146 +41,169 @@ void SmoothVariance(const Plane<float>& variance, int x0, int count, int y, floa
   }
 }
 
-void LoadCenters(const AtrousPass& pass, int x0, int count, int y, Row& row) {
+// What a vector of output pixels compares its neighbors with, and what it has gathered of them.
+struct Center {
+  VF normal[3];
+  VF plane_x, plane_y, plane_c;  // N . ray(x, y) = plane_x x + plane_y y + plane_c
+  VF plane;                      // N . (X - eye)
+  VF plane_scale;                // 1 / (8 plane_distance depth)
+  VF luminance;
+  VF luminance_scale;  // 1 / (8 (sigmas sigma + 1e-4 luminance))
+  VF sum[3], weight, variance;
+};
+
+Center LoadCenter(const AtrousPass& pass, int x, int y, VF smooth_variance) {
   const F d;
   const Camera& camera = pass.guides.camera;
-  const glm::mat3 to_view = camera.world_to_view;
-  alignas(64) Line smooth_variance = {};
-  SmoothVariance(pass.variance, x0, count, y, smooth_variance);
+  const glm::mat3& to_view = camera.world_to_view;
+  const auto load = [&](const Plane<float>& plane) { return hn::LoadU(d, plane.row(y) + x); };
+  Center at;
+  for (std::size_t c = 0; c < 3; ++c) at.normal[c] = load(pass.guides.surface.normal[c]);
+  const auto view_normal = [&](int r) {
+    VF v = hn::Mul(hn::Set(d, to_view[0][r]), at.normal[0]);
+    v = hn::MulAdd(hn::Set(d, to_view[1][r]), at.normal[1], v);
+    return hn::MulAdd(hn::Set(d, to_view[2][r]), at.normal[2], v);
+  };
   const VF inverse_focal = hn::Set(d, 1.0f / camera.focal);
-  for (int i = 0; i < count; i += static_cast<int>(hn::Lanes(d))) {
-    const auto load = [&](const Plane<float>& plane) {
-      return hn::LoadU(d, plane.row(y) + x0 + i);
-    };
-    const VF n[3] = {load(pass.guides.surface.normal[0]), load(pass.guides.surface.normal[1]),
-                     load(pass.guides.surface.normal[2])};
-    const auto view_normal = [&](int r) {
-      VF v = hn::Mul(hn::Set(d, to_view[0][r]), n[0]);
-      v = hn::MulAdd(hn::Set(d, to_view[1][r]), n[1], v);
-      return hn::MulAdd(hn::Set(d, to_view[2][r]), n[2], v);
-    };
-    const VF px = hn::Mul(view_normal(0), inverse_focal);
-    const VF py = hn::Mul(view_normal(1), inverse_focal);
-    const VF pc =
-        hn::NegMulAdd(px, hn::Set(d, camera.center.x - 0.5f),
-                      hn::NegMulAdd(py, hn::Set(d, camera.center.y - 0.5f), view_normal(2)));
-    const VF depth = load(pass.guides.surface.depth);
-    const VF x = hn::Iota(d, static_cast<float>(x0 + i));
-    const VF along = hn::MulAdd(px, x, hn::MulAdd(py, hn::Set(d, static_cast<float>(y)), pc));
-    for (int c = 0; c < 3; ++c) hn::Store(n[c], d, row.normal[c] + i);
-    hn::Store(px, d, row.plane_x + i);
-    hn::Store(py, d, row.plane_y + i);
-    hn::Store(pc, d, row.plane_c + i);
-    hn::Store(hn::Mul(depth, along), d, row.plane + i);
-    hn::Store(hn::Div(hn::Set(d, 0.125f), hn::Mul(hn::Set(d, pass.options.plane_distance), depth)),
-              d, row.plane_scale + i);
+  at.plane_x = hn::Mul(view_normal(0), inverse_focal);
+  at.plane_y = hn::Mul(view_normal(1), inverse_focal);
+  at.plane_c =
+      hn::NegMulAdd(at.plane_x, hn::Set(d, camera.center.x - 0.5f),
+                    hn::NegMulAdd(at.plane_y, hn::Set(d, camera.center.y - 0.5f), view_normal(2)));
+  const VF depth = load(pass.guides.surface.depth);
+  const VF column = hn::Iota(d, static_cast<float>(x));
+  const VF line = hn::Set(d, static_cast<float>(y));
+  at.plane =
+      hn::Mul(depth, hn::MulAdd(at.plane_x, column, hn::MulAdd(at.plane_y, line, at.plane_c)));
+  at.plane_scale =
+      hn::Div(hn::Set(d, 0.125f), hn::Mul(hn::Set(d, pass.options.plane_distance), depth));
 
-    const VF color[3] = {load(pass.color[0]), load(pass.color[1]), load(pass.color[2])};
-    const VF luminance = Luminance(color[0], color[1], color[2]);
-    const VF sigma = hn::Sqrt(hn::Load(d, smooth_variance + i));
-    const VF tolerance = hn::MulAdd(hn::Set(d, pass.options.luminance_sigmas), sigma,
-                                    hn::Mul(hn::Set(d, 1e-4f), hn::Abs(luminance)));
-    // 1e-20 only keeps black on black from dividing by zero.
-    hn::Store(luminance, d, row.luminance + i);
-    hn::Store(hn::Div(hn::Set(d, 0.125f), hn::Add(tolerance, hn::Set(d, 1e-20f))), d,
-              row.luminance_scale + i);
+  const VF color[3] = {load(pass.color[0]), load(pass.color[1]), load(pass.color[2])};
+  at.luminance = Luminance(color[0], color[1], color[2]);
+  const VF tolerance =
+      hn::MulAdd(hn::Set(d, pass.options.luminance_sigmas), hn::Sqrt(smooth_variance),
+                 hn::Mul(hn::Set(d, 1e-4f), hn::Abs(at.luminance)));
+  // 1e-20 only keeps black on black from dividing by zero.
+  at.luminance_scale = hn::Div(hn::Set(d, 0.125f), hn::Add(tolerance, hn::Set(d, 1e-20f)));
 
-    // The center tap always counts, whatever its normal.
-    const VF own = hn::Set(d, kSpline[2] * kSpline[2]);
-    for (int c = 0; c < 3; ++c) hn::Store(hn::Mul(own, color[c]), d, row.sum[c] + i);
-    hn::Store(own, d, row.weight + i);
-    hn::Store(hn::Mul(hn::Mul(own, own), load(pass.variance)), d, row.variance + i);
-  }
+  // The center tap always counts, whatever its normal.
+  const VF own = hn::Set(d, kSpline[2] * kSpline[2]);
+  for (int c = 0; c < 3; ++c) at.sum[c] = hn::Mul(own, color[c]);
+  at.weight = own;
+  at.variance = hn::Mul(hn::Mul(own, own), load(pass.variance));
+  return at;
 }
 
-// Adds the tap (dx, dy) to all pixels of the row at once.
-void AddTap(const AtrousPass& pass, const Tile& segment, int dx, int dy, Row& row) {
+// The planes of one row of taps.
+struct TapRow {
+  const float *color[3], *variance, *normal[3], *depth;
+
+  TapRow(const AtrousPass& pass, int y)
+      : color{pass.color[0].row(y), pass.color[1].row(y), pass.color[2].row(y)},
+        variance(pass.variance.row(y)),
+        normal{pass.guides.surface.normal[0].row(y), pass.guides.surface.normal[1].row(y),
+               pass.guides.surface.normal[2].row(y)},
+        depth(pass.guides.surface.depth.row(y)) {}
+};
+
+// Adds the taps that `load` fetches, at column `x` and row `y`, to the center.
+template <typename Load>
+HWY_INLINE void AddTap(const TapRow& row, VF x, VF y, VF kernel, Load load, Center& at) {
   const F d;
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  const Extent extent = pass.variance.extent();
-  const int x0 = segment.x0, ty = segment.y0 + dy;
-  // Lanes that would reach outside the image left or right are masked below; whole vectors that
-  // start outside are left out here.
-  const int count = segment.x1 - x0;
-  const float kernel = kSpline[dx / pass.step + 2] * kSpline[dy / pass.step + 2];
-  const VF one = hn::Set(d, 1.0f), zero = hn::Zero(d);
-  const auto& surface = pass.guides.surface;
-  const float* const rows[8] = {pass.color[0].row(ty),     pass.color[1].row(ty),
-                                pass.color[2].row(ty),     pass.variance.row(ty),
-                                surface.normal[0].row(ty), surface.normal[1].row(ty),
-                                surface.normal[2].row(ty), surface.depth.row(ty)};
-  for (int i = 0; i < count; i += lanes) {
-    const int tx = x0 + i + dx;
-    if (tx + lanes <= 0 || tx >= extent.width) continue;
-    const bool whole = tx >= 0 && tx + lanes <= extent.width;
-    alignas(64) float edge[64];
-    const auto load = [&](const float* source) {
-      if (whole) return hn::LoadU(d, source + tx);
-      for (int l = 0; l < lanes; ++l) edge[l] = source[std::clamp(tx + l, 0, extent.width - 1)];
-      return hn::Load(d, edge);
-    };
-    const VF depth = load(rows[7]);
-    const VF qx = hn::Iota(d, static_cast<float>(tx));
-    const VF along =
-        hn::MulAdd(hn::Load(d, row.plane_x + i), qx,
-                   hn::MulAdd(hn::Load(d, row.plane_y + i), hn::Set(d, static_cast<float>(ty)),
-                              hn::Load(d, row.plane_c + i)));
-    const VF plane = hn::Abs(hn::MulSub(depth, along, hn::Load(d, row.plane + i)));
-    const VF r = load(rows[0]), g = load(rows[1]), b = load(rows[2]);
-    const VF light = hn::Abs(hn::Sub(Luminance(r, g, b), hn::Load(d, row.luminance + i)));
-    const VF exponent = hn::MulAdd(plane, hn::Load(d, row.plane_scale + i),
-                                   hn::Mul(light, hn::Load(d, row.luminance_scale + i)));
-    // (1 - x/8)^8 and (N . N)^64 share their squarings; NaN (sky: inf depth) ends as 0 in the mask.
-    const VF decay = hn::Sub(one, exponent);
-    VF cosine = hn::Mul(hn::Load(d, row.normal[0] + i), load(rows[4]));
-    cosine = hn::MulAdd(hn::Load(d, row.normal[1] + i), load(rows[5]), cosine);
-    cosine = hn::MulAdd(hn::Load(d, row.normal[2] + i), load(rows[6]), cosine);
-    auto valid = hn::And(hn::Gt(decay, zero), hn::Gt(cosine, zero));
-    if (!whole) {
-      valid = hn::And(valid, hn::And(hn::Ge(qx, zero),
-                                     hn::Lt(qx, hn::Set(d, static_cast<float>(extent.width)))));
-    }
-    for (int s = 0; s < 3; ++s) cosine = hn::Mul(cosine, cosine);
-    VF w = hn::Mul(cosine, decay);
-    for (int s = 0; s < 3; ++s) w = hn::Mul(w, w);
-    w = hn::IfThenElseZero(valid, hn::Mul(w, hn::Set(d, kernel)));
+  const VF along = hn::MulAdd(at.plane_x, x, hn::MulAdd(at.plane_y, y, at.plane_c));
+  const VF plane = hn::Abs(hn::MulSub(load(row.depth), along, at.plane));
+  const VF r = load(row.color[0]), g = load(row.color[1]), b = load(row.color[2]);
+  const VF light = hn::Abs(hn::Sub(Luminance(r, g, b), at.luminance));
+  const VF decay = hn::NegMulAdd(plane, at.plane_scale,
+                                 hn::NegMulAdd(light, at.luminance_scale, hn::Set(d, 1.0f)));
+  VF cosine = hn::Mul(at.normal[0], load(row.normal[0]));
+  cosine = hn::MulAdd(at.normal[1], load(row.normal[1]), cosine);
+  cosine = hn::MulAdd(at.normal[2], load(row.normal[2]), cosine);
+  // Sky has infinite depth and so NaN or -inf here: the comparison fails.
+  const auto valid = hn::And(hn::Gt(decay, hn::Zero(d)), hn::Gt(cosine, hn::Zero(d)));
+  // (1 - x/8)^8 and (N . N)^64 share their squarings.
+  for (int s = 0; s < 3; ++s) cosine = hn::Mul(cosine, cosine);
+  VF w = hn::Mul(cosine, decay);
+  for (int s = 0; s < 3; ++s) w = hn::Mul(w, w);
+  w = hn::IfThenElseZero(valid, hn::Mul(w, kernel));
+  at.sum[0] = hn::MulAdd(w, r, at.sum[0]);
+  at.sum[1] = hn::MulAdd(w, g, at.sum[1]);
+  at.sum[2] = hn::MulAdd(w, b, at.sum[2]);
+  at.weight = hn::Add(at.weight, w);
+  at.variance = hn::MulAdd(hn::Mul(w, w), load(row.variance), at.variance);
+}
 
-    const auto add = [&](Line& line, VF weight, VF value) {
-      hn::Store(hn::MulAdd(weight, value, hn::Load(d, line + i)), d, line + i);
+// A tap row for the pixels x .. x + lanes, of which some taps lie outside the image: kernel 0
+// there.
+void AddEdgeRow(const AtrousPass& pass, const TapRow& row, int x, int dy, int y, Center& at) {
+  const F d;
+  const int lanes = static_cast<int>(hn::Lanes(d)), last = pass.variance.width() - 1;
+  alignas(64) float values[64];
+  for (int j = -2; j <= 2; ++j) {
+    if (j == 0 && dy == 0) continue;
+    const int first = x + j * pass.step;
+    const auto load = [&](const float* source) {
+      for (int l = 0; l < lanes; ++l) values[l] = source[std::clamp(first + l, 0, last)];
+      return hn::Load(d, values);
     };
-    add(row.sum[0], w, r);
-    add(row.sum[1], w, g);
-    add(row.sum[2], w, b);
-    add(row.weight, w, one);
-    add(row.variance, hn::Mul(w, w), load(rows[3]));
+    const VF column = hn::Iota(d, static_cast<float>(first));
+    const auto inside =
+        hn::And(hn::Ge(column, hn::Zero(d)), hn::Le(column, hn::Set(d, static_cast<float>(last))));
+    const VF kernel = hn::IfThenElseZero(inside, hn::Set(d, kSpline[j + 2] * kSpline[dy + 2]));
+    AddTap(row, column, hn::Set(d, static_cast<float>(y)), kernel, load, at);
   }
 }
 
-void StoreRow(const AtrousPass& pass, const Tile& segment, const Row& row) {
-  for (int x = segment.x0; x < segment.x1; ++x) {
-    const int i = x - segment.x0, y = segment.y0;
-    const bool surface = pass.guides.surface.id(x, y) != 0;
-    const float scale = surface ? 1.0f / row.weight[i] : 0.0f;
+void AddRow(const AtrousPass& pass, const TapRow& row, int x, int dy, int y, Center& at) {
+  const F d;
+  for (int j = -2; j <= 2; ++j) {
+    if (j == 0 && dy == 0) continue;
+    const int first = x + j * pass.step;
+    const auto load = [&](const float* source) { return hn::LoadU(d, source + first); };
+    AddTap(row, hn::Iota(d, static_cast<float>(first)), hn::Set(d, static_cast<float>(y)),
+           hn::Set(d, kSpline[j + 2] * kSpline[dy + 2]), load, at);
+  }
+}
+
+// Writes the first `count` lanes.
+void StoreCenter(const AtrousPass& pass, const Center& at, int x, int y, int count) {
+  const F d;
+  alignas(64) float color[3][64], variance[64];
+  const VF scale = hn::Div(hn::Set(d, 1.0f), at.weight);
+  for (int c = 0; c < 3; ++c) hn::Store(hn::Mul(at.sum[c], scale), d, color[c]);
+  hn::Store(hn::Mul(at.variance, hn::Mul(scale, scale)), d, variance);
+  const std::uint32_t* id = pass.guides.surface.id.at(x, y);
+  for (int i = 0; i < count; ++i) {
+    const bool surface = id[i] != 0;
     for (std::size_t c = 0; c < 3; ++c) {
-      pass.out_color[c](x, y) = surface ? row.sum[c][i] * scale : pass.color[c](x, y);
+      pass.out_color[c](x + i, y) = surface ? color[c][i] : pass.color[c](x + i, y);
     }
-    pass.out_variance(x, y) = surface ? row.variance[i] * scale * scale : pass.variance(x, y);
+    pass.out_variance(x + i, y) = surface ? variance[i] : pass.variance(x + i, y);
   }
 }
 
 void AtrousTile(const AtrousPass& pass, const Tile& tile) {
-  const int height = pass.variance.height();
-  Row row;
+  const F d;
+  const int lanes = static_cast<int>(hn::Lanes(d)), reach = 2 * pass.step;
+  const Extent extent = pass.variance.extent();
+  alignas(64) Line smooth_variance = {};
   for (int y = tile.y0; y < tile.y1; ++y) {
-    const Tile segment{tile.x0, y, tile.x1, y + 1, tile.index};
-    LoadCenters(pass, tile.x0, tile.x1 - tile.x0, y, row);
-    for (int dy = -2 * pass.step; dy <= 2 * pass.step; dy += pass.step) {
-      if (y + dy < 0 || y + dy >= height) continue;
-      for (int dx = -2 * pass.step; dx <= 2 * pass.step; dx += pass.step) {
-        if (dx != 0 || dy != 0) AddTap(pass, segment, dx, dy, row);
+    SmoothVariance(pass.variance, tile.x0, tile.x1 - tile.x0, y, smooth_variance);
+    for (int x = tile.x0; x < tile.x1; x += lanes) {
+      Center at = LoadCenter(pass, x, y, hn::Load(d, smooth_variance + (x - tile.x0)));
+      const bool inside = x - reach >= 0 && x + lanes + reach <= extent.width;
+      for (int dy = -2; dy <= 2; ++dy) {
+        const int ty = y + dy * pass.step;
+        if (ty < 0 || ty >= extent.height) continue;
+        const TapRow row(pass, ty);
+        if (inside) {
+          AddRow(pass, row, x, dy, ty, at);
+        } else {
+          AddEdgeRow(pass, row, x, dy, ty, at);
+        }
       }
+      StoreCenter(pass, at, x, y, std::min(lanes, tile.x1 - x));
     }
-    StoreRow(pass, segment, row);
   }
 }
 
