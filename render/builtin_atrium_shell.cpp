@@ -91,6 +91,27 @@ void add_doors(Scene& scene, const Stones& stones) {
   place_once(scene, frames.take("door frames", stones.marble, 0.5f));
 }
 
+void add_floor_tiles(Scene& scene, Stones& stones) {
+  stones.court_floor =
+      add_material(scene, paint_masonry("court tiles", {.columns = 4,
+                                                        .rows = 4,
+                                                        .shift = 0.0f,
+                                                        .joint = 0.006f,
+                                                        .stone = {0.52f, 0.46f, 0.37f},
+                                                        .other = {0.34f, 0.24f, 0.18f},
+                                                        .joint_color = {0.2f, 0.18f, 0.15f},
+                                                        .checker = true,
+                                                        .seed = 6}));
+  stones.gallery_floor =
+      add_material(scene, paint_masonry("gallery tiles", {.columns = 5,
+                                                          .rows = 10,
+                                                          .joint = 0.006f,
+                                                          .stone = {0.42f, 0.22f, 0.13f},
+                                                          .other = {0.50f, 0.30f, 0.18f},
+                                                          .joint_color = {0.25f, 0.20f, 0.16f},
+                                                          .seed = 7}));
+}
+
 }  // namespace
 
 Stones add_stones(Scene& scene) {
@@ -111,24 +132,7 @@ Stones add_stones(Scene& scene) {
                                                               .light = {0.74f, 0.70f, 0.62f},
                                                               .cells = 5,
                                                               .seed = 5}));
-  stones.court_floor =
-      add_material(scene, paint_masonry("court tiles", {.columns = 4,
-                                                        .rows = 4,
-                                                        .shift = 0.0f,
-                                                        .joint = 0.006f,
-                                                        .stone = {0.52f, 0.46f, 0.37f},
-                                                        .other = {0.34f, 0.24f, 0.18f},
-                                                        .joint_color = {0.2f, 0.18f, 0.15f},
-                                                        .checker = true,
-                                                        .seed = 6}));
-  stones.gallery_floor =
-      add_material(scene, paint_masonry("gallery tiles", {.columns = 5,
-                                                          .rows = 10,
-                                                          .joint = 0.006f,
-                                                          .stone = {0.42f, 0.22f, 0.13f},
-                                                          .other = {0.50f, 0.30f, 0.18f},
-                                                          .joint_color = {0.25f, 0.20f, 0.16f},
-                                                          .seed = 7}));
+  add_floor_tiles(scene, stones);
   stones.wood = add_material(scene, paint_boards("wood", {.dark = {0.10f, 0.05f, 0.025f},
                                                           .light = {0.32f, 0.18f, 0.09f},
                                                           .boards = 6,

@@ -167,19 +167,8 @@ void hang_pictures(Scene& scene, const Materials& m) {
   }
 }
 
-void add_furniture(Scene& scene, const Materials& m) {
+Mesh column(int material) {
   MeshBuilder builder;
-  // A free-standing wall in the middle.
-  builder.box({-0.15f, 0, -1.5f}, {0.15f, 2.9f, 1.5f});
-  place_once(scene, builder.take("partition", m.cream, 0.4f));
-
-  builder.box({-0.9f, 0.40f, -0.25f}, {0.9f, 0.48f, 0.25f});
-  for (const float x : {-0.8f, 0.7f}) builder.box({x, 0, -0.2f}, {x + 0.1f, 0.40f, 0.2f});
-  const int bench = add_mesh(scene, builder.take("bench", m.wood, 1.0f));
-  place(scene, bench, {-3.4f, 0, 0.0f}, 90.0f);
-  place(scene, bench, {3.4f, 0, -1.0f}, 90.0f);
-  place(scene, bench, {12.0f, 0, -1.4f}, 0.0f);
-
   builder.lathe({.profile = {{0.36f, 0.0f},
                              {0.36f, 0.12f},
                              {0.30f, 0.18f},
@@ -193,11 +182,11 @@ void add_furniture(Scene& scene, const Materials& m) {
                              {0.36f, kHeight}},
                  .segments = 48,
                  .foot = glm::vec3(0.0f)});
-  const int column = add_mesh(scene, builder.take("column", m.stone, 0.5f));
-  for (const float x : {-6.9f, 6.9f}) {
-    for (const float z : {-2.9f, 2.9f}) place(scene, column, {x, 0, z});
-  }
+  return builder.take("column", material, 0.5f);
+}
 
+Mesh vase_on_pedestal(int material) {
+  MeshBuilder builder;
   builder.box({-0.25f, 0, -0.25f}, {0.25f, 1.0f, 0.25f});
   builder.lathe({.profile = {{0.12f, 0.0f},
                              {0.2f, 0.1f},
@@ -208,11 +197,30 @@ void add_furniture(Scene& scene, const Materials& m) {
                              {0.0f, 0.6f}},
                  .segments = 48,
                  .foot = {0, 1.0f, 0}});
-  const int vase = add_mesh(scene, builder.take("vase on a pedestal", m.stone, 0.5f));
-  for (const glm::vec3& foot :
-       {glm::vec3(14.3f, 0, 2.4f), glm::vec3(-3.4f, 0, -2.4f), glm::vec3(3.6f, 0, 2.9f)}) {
-    place(scene, vase, foot);
+  return builder.take("vase on a pedestal", material, 0.5f);
+}
+
+void add_furniture(Scene& scene, const Materials& m) {
+  MeshBuilder builder;
+  // A free-standing wall in the middle.
+  builder.box({-0.15f, 0, -1.5f}, {0.15f, 2.9f, 1.5f});
+  place_once(scene, builder.take("partition", m.cream, 0.4f));
+
+  builder.box({-0.9f, 0.40f, -0.25f}, {0.9f, 0.48f, 0.25f});
+  for (const float x : {-0.8f, 0.7f}) builder.box({x, 0, -0.2f}, {x + 0.1f, 0.40f, 0.2f});
+  const int bench = add_mesh(scene, builder.take("bench", m.wood, 1.0f));
+  place(scene, bench, {-3.4f, 0, 0.0f}, 90.0f);
+  place(scene, bench, {3.4f, 0, -1.0f}, 90.0f);
+  place(scene, bench, {12.0f, 0, -1.4f}, 0.0f);
+
+  const int support = add_mesh(scene, column(m.stone));
+  for (const float x : {-6.9f, 6.9f}) {
+    for (const float z : {-2.9f, 2.9f}) place(scene, support, {x, 0, z});
   }
+  const int vase = add_mesh(scene, vase_on_pedestal(m.stone));
+  place(scene, vase, {14.3f, 0, 2.4f});
+  place(scene, vase, {-3.4f, 0, -2.4f});
+  place(scene, vase, {3.6f, 0, 2.9f});
 }
 
 }  // namespace
