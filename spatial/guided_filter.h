@@ -32,16 +32,17 @@ struct GuidedInputs {
 struct GuidedScratch;
 
 /// He, Sun and Tang 2010, guided by noise-free geometry as in Bauszat et al. 2011 (Eq. 6-9), with
-/// weights. With I = (normal, log depth), four guides, each window k and channel N of the signal has
+/// weights. With I = (normal, log depth), four guides, each window k and channel N of the signal
+/// has
 ///   min over a, b of  E_k[(a . I + b - N)^2] + epsilon . a^2,   E_k[f] = sum w f / sum w,
 /// hence a = (Cov_k(I) + diag(epsilon))^-1 Cov_k(I, N) and b = E_k[N] - a . E_k[I]. At pixel p the
 /// windows around all surface pixels k within `radius` are averaged: out(p) = mean(a_k) . I_p +
 /// mean(b_k). The logarithm makes the depth dimensionless and the same for every window.
 ///
-/// A pixel's signal counts where it is finite and its weight positive and finite; all others, NaN or
-/// not, touch no sum, but get an output from their geometry, too. Surfaces need an id, a normal that
-/// is finite and a depth in (0, inf). Output is 0 without surface and where no window holds a usable
-/// signal. It is linear in the signal and may thus leave its range, below 0 as well.
+/// A pixel's signal counts where it is finite and its weight positive and finite; all others, NaN
+/// or not, touch no sum, but get an output from their geometry, too. Surfaces need an id, a normal
+/// that is finite and a depth in (0, inf). Output is 0 without surface and where no window holds a
+/// usable signal. It is linear in the signal and may thus leave its range, below 0 as well.
 ///
 /// Box sums by doubling: additions grow with the logarithm of the radius, and a sum has the values
 /// of its own window only, so that nothing drifts and no firefly leaves a trace.

@@ -7,10 +7,12 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "spatial/guided_filter_simd.cpp"
+// Not in alphabetical order: foreach_target.h has to come first.
+// clang-format off
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
-// After highway.h: the logarithm, once for each target.
 #include <hwy/contrib/math/math-inl.h>
+// clang-format on
 
 HWY_BEFORE_NAMESPACE();
 namespace eigenlight::HWY_NAMESPACE {
@@ -98,8 +100,10 @@ void LoadRow(const GuidedInputs& in, const Area& area, int y, Scratch& s) {
 
 // Takes the mean over all surfaces of the block off a guide, so that covariances, which are small
 // differences of sums, keep their digits in float.
-void CenterGuide(const Area& area, Scratch::Seen& guide, Scratch& s, Scratch::Seen& weighted) {
+void CenterGuide(const Area& area, int index, Scratch& s) {
   const F d;
+  Scratch::Seen& guide = s.guide[index];
+  Scratch::Seen& weighted = s.weighted_guide[index];
   double sum = 0.0, count = 0.0;
   for (int y = 0; y < area.height; ++y) {
     VF row_sum = hn::Zero(d), row_count = hn::Zero(d);
@@ -148,8 +152,8 @@ void SumRun(const Run& run, float* HWY_RESTRICT data, float* HWY_RESTRICT sum) {
   }
 }
 
-// Sums over all windows that lie in a block of height rows whose row y `load` writes: the
-// result has 2 radius fewer rows and columns.
+// Sums over all windows that lie in a block, whose row y `load` writes: the result has 2 radius
+// fewer rows and columns.
 struct BoxSize {
   int width, height, radius;
 };
@@ -291,6 +295,7 @@ void FitAll(const GuidedOptions& options, const Area& area, Scratch& s) {
 }
 
 // Averages the coefficients over the windows that hold each pixel, and applies them to its guides.
+// The result goes to blocks of sums that the fits have spent.
 void Average(const GuidedOptions& options, const Area& area, Scratch& s) {
   const F d;
   const int r = options.radius;
@@ -299,7 +304,6 @@ void Average(const GuidedOptions& options, const Area& area, Scratch& s) {
     const auto load = [&](int y, float* out) {
       std::memcpy(out, s.window[index].row(y), Scratch::Windows::kStride * sizeof(float));
     };
-    // Into the second half of the window blocks, whose sums are spent.
     BoxSum(size, load, s, s.window[index]);
   }
   for (int y = 0; y < area.height - 4 * r; ++y) {
@@ -324,7 +328,7 @@ void GuidedTile(const GuidedInputs& in, const GuidedOptions& options, const Tile
                 GuidedScratch& s, Planes<3>& out) {
   const Area area = SeenArea(tile, options.radius, in.weight.extent());
   for (int y = 0; y < area.height; ++y) LoadRow(in, area, y, s);
-  for (int i = 0; i < kGuides; ++i) CenterGuide(area, s.guide[i], s, s.weighted_guide[i]);
+  for (int i = 0; i < kGuides; ++i) CenterGuide(area, i, s);
   SumWindows(area, options.radius, s);
   FitAll(options, area, s);
   Average(options, area, s);

@@ -1,0 +1,125 @@
+// Guided filter as its equations have it: double, window by window, no tiles.
+#pragma once
+
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "spatial/guided_filter.h"
+
+namespace eigenlight::reference {
+
+using Guide = Eigen::Vector4d;
+using Light = Eigen::Vector3d;
+
+/// F = slope I + offset in the window around one pixel; `valid` if it counts in averages.
+struct WindowFit {
+  bool valid = false;
+  Eigen::Matrix<double, 3, 4> slope = Eigen::Matrix<double, 3, 4>::Zero();
+  Light offset = Light::Zero();
+};
+
+inline bool has_surface(const Frame& frame, int x, int y) {
+  const auto& s = frame.surface;
+  const bool normal = std::isfinite(s.normal[0](x, y)) && std::isfinite(s.normal[1](x, y)) &&
+                      std::isfinite(s.normal[2](x, y));
+  return s.id(x, y) != 0 && s.depth(x, y) > 0.0f && std::isfinite(s.depth(x, y)) && normal;
+}
+
+inline Guide guide_at(const Frame& frame, int x, int y) {
+  const auto& s = frame.surface;
+  return Guide(s.normal[0](x, y), s.normal[1](x, y), s.normal[2](x, y),
+               std::log(static_cast<double>(s.depth(x, y))));
+}
+
+inline double usable_weight(const GuidedInputs& in, int x, int y) {
+  const double w = static_cast<double>(in.weight(x, y));
+  bool finite = std::isfinite(w);
+  for (const auto& plane : in.signal) finite = finite && std::isfinite(plane(x, y));
+  return finite && w > 0.0 && has_surface(in.guides, x, y) ? w : 0.0;
+}
+
+template <typename Visit>
+void for_window(Extent extent, glm::ivec2 center, int radius, const Visit& visit) {
+  for (int y = center.y - radius; y <= center.y + radius; ++y) {
+    for (int x = center.x - radius; x <= center.x + radius; ++x) {
+      if (extent.contains(x, y)) visit(x, y);
+    }
+  }
+}
+
+/// Bauszat 2011, Eq. 8 and 9, with weighted expectations and four guides.
+inline WindowFit fit_window(const GuidedInputs& in, const GuidedOptions& options,
+                            glm::ivec2 center) {
+  WindowFit fit;
+  if (!has_surface(in.guides, center.x, center.y)) return fit;
+  double sum = 0.0;
+  Guide mean = Guide::Zero();
+  Light light = Light::Zero();
+  const auto light_at = [&](int x, int y) {
+    return Light(in.signal[0](x, y), in.signal[1](x, y), in.signal[2](x, y));
+  };
+  const auto each = [&](const auto& visit) {
+    for_window(in.weight.extent(), center, options.radius, [&](int x, int y) {
+      const double w = usable_weight(in, x, y);
+      if (w > 0.0) visit(w, guide_at(in.guides, x, y), light_at(x, y));
+    });
+  };
+  each([&](double w, const Guide& guide, const Light& n) {
+    sum += w;
+    mean += w * guide;
+    light += w * n;
+  });
+  if (sum == 0.0) return fit;
+  mean /= sum;
+  light /= sum;
+  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
+  Eigen::Matrix<double, 4, 3> cross = Eigen::Matrix<double, 4, 3>::Zero();
+  each([&](double w, const Guide& guide, const Light& n) {
+    covariance += w / sum * (guide - mean) * (guide - mean).transpose();
+    cross += w / sum * (guide - mean) * (n - light).transpose();
+  });
+  const double normal = static_cast<double>(options.epsilon_normal);
+  covariance.diagonal() +=
+      Guide(normal, normal, normal, static_cast<double>(options.epsilon_depth));
+  fit.slope = covariance.ldlt().solve(cross).transpose();
+  fit.offset = light - fit.slope * mean;
+  fit.valid = true;
+  return fit;
+}
+
+/// Fits of all pixels, row by row.
+inline std::vector<WindowFit> fit_windows(const GuidedInputs& in, const GuidedOptions& options) {
+  const Extent extent = in.weight.extent();
+  std::vector<WindowFit> fits;
+  for (int y = 0; y < extent.height; ++y) {
+    for (int x = 0; x < extent.width; ++x) fits.push_back(fit_window(in, options, {x, y}));
+  }
+  return fits;
+}
+
+/// All pixels, wanted or not.
+inline Planes<3> guided_filter(const GuidedInputs& in, const GuidedOptions& options) {
+  const Extent extent = in.weight.extent();
+  const std::vector<WindowFit> fits = fit_windows(in, options);
+  Planes<3> out = make_planes<3>(extent);
+  for (int y = 0; y < extent.height; ++y) {
+    for (int x = 0; x < extent.width; ++x) {
+      if (!has_surface(in.guides, x, y)) continue;
+      Light sum = Light::Zero();
+      double count = 0.0;
+      for_window(extent, {x, y}, options.radius, [&](int i, int j) {
+        const WindowFit& fit = fits[static_cast<std::size_t>(j * extent.width + i)];
+        if (!fit.valid) return;
+        sum += fit.slope * guide_at(in.guides, x, y) + fit.offset;
+        count += 1.0;
+      });
+      if (count == 0.0) continue;
+      for (int c = 0; c < 3; ++c) {
+        out[static_cast<std::size_t>(c)](x, y) = static_cast<float>(sum[c] / count);
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace eigenlight::reference
