@@ -1,0 +1,101 @@
+#include "frame/plane.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+
+#include "tests/support/extents.h"
+
+namespace eigenlight {
+namespace {
+
+template <typename T>
+void expect_rows_on_lines(Extent extent, int channels) {
+  const Plane<T> plane(extent, channels);
+  EXPECT_EQ(plane.extent(), extent);
+  EXPECT_GE(plane.stride(), static_cast<std::size_t>(extent.width * channels));
+  for (int y = 0; y < extent.height; ++y) {
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(plane.row(y)) % Plane<T>::kLine, 0u);
+  }
+  for (const T value : plane.storage()) EXPECT_EQ(value, T{});
+}
+
+TEST(Plane, StartsEachRowOnALineAndAtZero) {
+  for (const Extent extent : kSweepExtents) {
+    expect_rows_on_lines<float>(extent, 1);
+    expect_rows_on_lines<float>(extent, 28);
+    expect_rows_on_lines<std::uint8_t>(extent, 1);
+    expect_rows_on_lines<double>(extent, 3);
+  }
+}
+
+TEST(Plane, PadsRowsToWholeLinesAndNotMore) {
+  EXPECT_EQ(Plane<float>({1, 2}).stride(), 16u);
+  EXPECT_EQ(Plane<float>({16, 2}).stride(), 16u);
+  EXPECT_EQ(Plane<float>({17, 2}).stride(), 32u);
+  EXPECT_EQ(Plane<std::uint8_t>({65, 1}).stride(), 128u);
+  EXPECT_EQ(Plane<float>({5, 3}, 4).stride(), 32u);
+  EXPECT_EQ(Plane<float>({5, 3}, 4).storage().size(), 96u);
+}
+
+TEST(Plane, AddressesPixelsByColumnRowAndChannel) {
+  Plane<float> plane({5, 3}, 2);
+  plane.at(4, 2)[1] = 7.0f;
+  plane(0, 1) = 3.0f;
+  EXPECT_EQ(plane.row(2)[9], 7.0f);
+  EXPECT_EQ(plane.row(1)[0], 3.0f);
+  EXPECT_EQ(plane(4, 2), 0.0f);
+}
+
+TEST(Plane, ClonesToStorageOfItsOwn) {
+  Plane<int> plane({5, 3});
+  plane(2, 1) = 4;
+  const Plane<int> copy = plane.clone();
+  plane(2, 1) = 5;
+  EXPECT_EQ(copy(2, 1), 4);
+  EXPECT_EQ(copy.extent(), plane.extent());
+  EXPECT_TRUE(Plane<int>().clone().empty());
+}
+
+TEST(Plane, CopiesOnlyFromItsOwnShape) {
+  Plane<float> plane({5, 3}, 2), same({5, 3}, 2);
+  same.at(4, 2)[1] = 2.0f;
+  const float* storage = plane.row(0);
+  plane.copy_from(same);
+  EXPECT_EQ(plane.at(4, 2)[1], 2.0f);
+  EXPECT_EQ(plane.row(0), storage);
+  EXPECT_THROW(plane.copy_from(Plane<float>({3, 5}, 2)), std::invalid_argument);
+  EXPECT_THROW(plane.copy_from(Plane<float>({5, 3}, 1)), std::invalid_argument);
+  EXPECT_THROW(plane.copy_from(Plane<float>()), std::invalid_argument);
+}
+
+TEST(Plane, RefusesSizesThatNoImageHas) {
+  EXPECT_THROW(Plane<float>({0, 0}), std::invalid_argument);
+  EXPECT_THROW(Plane<float>({-1, 4}), std::invalid_argument);
+  EXPECT_THROW(Plane<float>({4, kMaxSide + 1}), std::invalid_argument);
+  EXPECT_THROW(Plane<float>({4, 4}, 0), std::invalid_argument);
+  EXPECT_THROW(Plane<float>({4, 4}, 65), std::invalid_argument);
+}
+
+TEST(Plane, EnsureExtentKeepsWhatFitsAndReplacesTheRest) {
+  Plane<float> plane({5, 3});
+  plane(1, 1) = 6.0f;
+  ensure_extent(plane, {5, 3});
+  EXPECT_EQ(plane(1, 1), 6.0f);
+  ensure_extent(plane, {3, 5});
+  EXPECT_EQ(plane.extent(), (Extent{3, 5}));
+  EXPECT_EQ(plane(1, 1), 0.0f);
+}
+
+TEST(Extent, ContainsItsPixelsOnly) {
+  constexpr Extent kExtent{5, 3};
+  EXPECT_EQ(kExtent.pixels(), 15u);
+  EXPECT_TRUE(kExtent.contains(4, 2));
+  EXPECT_FALSE(kExtent.contains(5, 2));
+  EXPECT_FALSE(kExtent.contains(4, 3));
+  EXPECT_FALSE(kExtent.contains(-1, 0));
+  EXPECT_FALSE(kExtent.contains(0, -1));
+}
+
+}  // namespace
+}  // namespace eigenlight

@@ -1,0 +1,14 @@
+// Image sizes that tests sweep.
+#pragma once
+
+#include <array>
+
+#include "frame/plane.h"
+
+namespace eigenlight {
+
+/// One pixel, less than a vector, whole stage tiles, one pixel more than them, and odd all over.
+inline constexpr std::array<Extent, 5> kSweepExtents{
+    {{1, 1}, {5, 3}, {64, 16}, {65, 17}, {191, 107}}};
+
+}  // namespace eigenlight
