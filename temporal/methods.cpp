@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <string>
 
+#include "temporal/baselines/chen2012.h"
+#include "temporal/baselines/running_mean.h"
 #include "temporal/denoiser.h"
 #include "temporal/eigen_denoiser.h"
 #include "temporal/pass_through.h"
@@ -20,6 +22,9 @@ const std::vector<Method>& methods() {
       {"eigenlight",
        "tiled incremental PCA, leave-one-out coefficients, innovation test, resampling",
        "after Chen 2012", make<EigenDenoiser>},
+      {"chen2012", "incremental PCA of whole images, basis filtering, 120 samples at new pixels",
+       "Chen, Lei and Chang 2012", make<Chen2012>},
+      {"mean", "reprojected running mean of up to 32 frames", "", make<RunningMean>},
       {"noisy", "the frames as they are rendered", "", make<PassThrough>},
   };
   return kMethods;

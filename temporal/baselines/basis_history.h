@@ -1,0 +1,48 @@
+// Bases that follow their surfaces from frame to frame: what the baselines have in common.
+#pragma once
+
+#include <cstdint>
+
+#include "frame/state.h"
+#include "reproject/basis_field.h"
+#include "reproject/taps.h"
+
+namespace eigenlight {
+
+/// Bases and ages as the last frame saw them, with the surfaces and the camera of that frame.
+class BasisHistory {
+ public:
+  struct Warp {
+    bool cut = false;          ///< history was dropped
+    std::int64_t skipped = 0;  ///< pixels left as they are since nothing moved
+  };
+
+  /// Throws std::invalid_argument on a bad size or number of bases.
+  BasisHistory(Extent extent, int bases);
+
+  /// Carries bases and ages over to `frame` through validated taps. All become 0 at a cut, which is
+  /// a frame that does not follow the one kept last. Throws std::invalid_argument if its size
+  /// differs.
+  [[nodiscard]] Warp warp(const Frame& frame);
+  /// Takes what the next warp() has to know of `frame`. The bases are to be updated by then.
+  void keep(const Frame& frame);
+  void reset() { known_ = false; }  ///< the next warp() is a cut
+
+  [[nodiscard]] Extent extent() const { return bases_.extent(); }
+  [[nodiscard]] BasisField& bases() { return bases_; }
+  [[nodiscard]] const BasisField& bases() const { return bases_; }
+
+  /// load() throws std::runtime_error when the state has another size or number of bases.
+  void save(StateWriter& out) const;
+  void load(StateReader& in);
+
+ private:
+  TapOptions taps_;
+  bool known_ = false;
+  int index_ = 0;
+  Camera camera_;
+  GBuffer surface_;  // depth, normal and id
+  BasisField bases_, warped_;
+};
+
+}  // namespace eigenlight

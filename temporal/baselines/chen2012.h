@@ -1,0 +1,64 @@
+// Spatio-temporal filtering by incremental PCA, as published.
+#pragma once
+
+#include "temporal/baselines/basis_history.h"
+#include "temporal/baselines/chen2012_filter.h"
+#include "temporal/baselines/chen2012_pca.h"
+#include "temporal/denoiser.h"
+
+namespace eigenlight {
+
+/// Chen, Lei and Chang 2012, for comparison. Per frame:
+///   1. bases and ages are carried over by reverse reprojection (section 3.4);
+///   2. newly seen pixels get 120 more samples each (Fig. 6d), but none at a cut, where all are
+///   new;
+///   3. the warped bases are made orthogonal (Algorithm 2);
+///   4. CCIPCA updates them with w = (1 + l) / n, amnesia l = 2, n the pixel's own age with this
+///      frame (Algorithm 1, section 3.4.2);
+///   5. bases are smoothed at newly seen pixels (Fig. 6c); at a cut, only where no sample is
+///   usable;
+///   6. the picture is the projection of the noisy frame on the *updated* bases.
+/// Readings where the paper is silent: w is at most 1, since (1 + l) / n of the first frames would
+/// weigh history negatively. With w = 1 a new pixel thus starts at Algorithm 1's own u_i (u_i . v_i
+/// / |v_i|): its v_1 reproduces its sample, its other v_i what that leaves over. Ages saturate at
+/// 255. Samples that are not finite take part in nothing.
+class Chen2012 final : public Denoiser {
+ public:
+  static constexpr float kAmnesia = 2.0f;       ///< l; Weng 2003 takes 2 to 4
+  static constexpr float kMostFrames = 255.0f;  ///< the paper has no limit
+  static constexpr int kExtraSamples = 120;     ///< Fig. 6d
+
+  explicit Chen2012(const DenoiserOptions& options);
+
+  [[nodiscard]] const Planes<3>* step(FrameSource& source) override;
+  [[nodiscard]] const Frame& frame() const override { return frame_; }
+  [[nodiscard]] const FrameReport& report() const override { return report_; }
+  [[nodiscard]] const Plane<float>& age() const override { return age_; }
+  void reset() override { history_.reset(); }
+  void save(StateWriter& out) const override;
+  void load(StateReader& in) override;
+
+ private:
+  struct Counts {
+    std::int64_t surface = 0, fresh = 0, non_finite = 0;
+  };
+
+  void find_new_pixels(const Tile& tile);
+  void resample(FrameSource& source);
+  void merge_samples(const Tile& tile, bool resampled);
+  void weigh(const Tile& tile);
+
+  Frame frame_;
+  FrameReport report_;
+  BasisHistory history_;
+  int number_ = 0;  // frames since the last cut
+
+  ImagePca pca_;
+  NewPixelFilter filter_;
+  std::vector<Counts> counts_;  // per tile
+  Plane<std::uint8_t> extra_, smooth_;
+  Planes<3> extra_mean_, light_, output_;
+  Plane<float> old_age_, age_, weight_;
+};
+
+}  // namespace eigenlight
