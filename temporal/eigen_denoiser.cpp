@@ -1,5 +1,6 @@
 #include "temporal/eigen_denoiser.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "reproject/warp.h"
@@ -15,6 +16,7 @@ void EigenOptions::validate() const {
   innovation.validate();
   budget.validate();
   atrous.validate();
+  EL_CHECK(birth >= 0.0f && birth <= 1.0f, "birth {}: expected [0, 1]", birth);
   EL_CHECK(quiet >= 0.0f && quiet <= 1.0f, "quiet {}: expected [0, 1]", quiet);
 }
 
@@ -50,11 +52,7 @@ EigenDenoiser::EigenDenoiser(const DenoiserOptions& options, const EigenOptions&
 const Planes<3>* EigenDenoiser::step(FrameSource& source) {
   StageClock clock;
   if (!source.next(frame_)) return nullptr;
-  check_frame();
-  report_ = {};
-  report_.frame = frame_.index;
-  report_.cut = !has_history_ || history_index_ != frame_.previous_index;
-  report_[Stage::kSource] = clock.lap();
+  start_frame(clock.lap());
   warp_history();
   report_[Stage::kReproject] = clock.lap();
   resample(source);
@@ -71,9 +69,24 @@ const Planes<3>* EigenDenoiser::step(FrameSource& source) {
   return &output_;
 }
 
-void EigenDenoiser::check_frame() const {
+void EigenDenoiser::start_frame(const StageTime& time) {
   EL_CHECK(frame_.extent() == extent_, "frame {} is {}x{}, expected {}x{}", frame_.index,
            frame_.extent().width, frame_.extent().height, extent_.width, extent_.height);
+  report_ = {};
+  report_.frame = frame_.index;
+  report_.cut = !has_history_ || history_index_ != frame_.previous_index;
+  report_[Stage::kSource] = time;
+  for_each_tile(tiles_, [&](const Tile& tile) {
+    std::int64_t surface = 0;
+    for (int y = tile.y0; y < tile.y1; ++y) {
+      for (int x = tile.x0; x < tile.x1; ++x) surface += frame_.surface.id(x, y) != 0 ? 1 : 0;
+    }
+    counts_[static_cast<std::size_t>(tile.index)] = {surface};
+  });
+}
+
+bool EigenDenoiser::is_empty(const Tile& tile) const {
+  return counts_[static_cast<std::size_t>(tile.index)].surface == 0;
 }
 
 void EigenDenoiser::warp_history() {
@@ -86,7 +99,7 @@ void EigenDenoiser::warp_history() {
   const bool moving = !report_.cut && !still;
   for_each_tile(tiles_, [&](const Tile& tile) {
     if (moving) warp_tile(tile);
-    if (report_.cut) return;
+    if (report_.cut || is_empty(tile)) return;
     accumulate_tile(
         {moving ? warped_bases_ : bases_, frame_, moving ? warped_variance_ : variance_}, tile,
         sums_[static_cast<std::size_t>(tile.index)]);
@@ -99,6 +112,13 @@ void EigenDenoiser::warp_history() {
 }
 
 void EigenDenoiser::warp_tile(const Tile& tile) {
+  if (is_empty(tile)) {
+    for (int y = tile.y0; y < tile.y1; ++y) {
+      std::fill(warped_bases_.pixel(tile.x0, y),
+                warped_bases_.pixel(tile.x1 - 1, y) + warped_bases_.pixel_floats(), 0.0f);
+    }
+    return;
+  }
   TapSegment taps;
   const PreviousSurface previous{history_camera_, history_surface_};
   for (int y = tile.y0; y < tile.y1; ++y) {
@@ -129,7 +149,6 @@ void EigenDenoiser::resample(FrameSource& source) {
 // The mean of all samples of each pixel; what is not finite is left out.
 void EigenDenoiser::merge_samples(const Tile& tile, bool resampled) {
   TileCount& count = counts_[static_cast<std::size_t>(tile.index)];
-  count = {};
   const float regular = static_cast<float>(std::max(frame_.spp, 1));
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0; x < tile.x1; ++x) {
@@ -144,7 +163,6 @@ void EigenDenoiser::merge_samples(const Tile& tile, bool resampled) {
       }
       const bool usable = surface && std::isfinite(sum);
       samples_(x, y) = usable ? (regular + extra) / regular : 0.0f;
-      count.surface += surface ? 1 : 0;
       count.fresh += surface && old_age_(x, y) == 0.0f ? 1 : 0;
       count.non_finite += surface && !usable ? 1 : 0;
     }
@@ -153,21 +171,44 @@ void EigenDenoiser::merge_samples(const Tile& tile, bool resampled) {
 
 void EigenDenoiser::project() {
   solve_coefficients(sums_, options_.shrink, coefficients_);
-  std::fill(newborn_.begin(), newborn_.end(), 0);
   for_each_tile(tiles_, [&](const Tile& tile) {
     predict_tile(bases_, coefficients_, light_, tile,
                  {prediction_, residual_, confirmed_, old_age_});
   });
+  double rank = 0.0, tiles = 0.0;
+  for (int i = 0; i < tiles_.count(); ++i) {
+    if (counts_[static_cast<std::size_t>(i)].surface == 0) {
+      report_.skipped_surface += tiles_.tile(i).pixels();
+      continue;
+    }
+    const auto delta = coefficients_.tile(i).subspan(1);
+    tiles += 1.0;
+    rank += 1.0 + static_cast<double>(delta.size()) -
+            static_cast<double>(std::count(delta.begin(), delta.end(), 0.0f));
+  }
+  report_.mean_rank = tiles > 0.0 ? rank / tiles : 0.0;
 }
 
 void EigenDenoiser::update() {
   for_each_tile(tiles_, [&](const Tile& tile) {
-    innovation_tile({residual_, confirmed_, old_age_, samples_}, options_.innovation, tile,
-                    {new_age_, variance_});
+    if (is_empty(tile)) return;
+    const auto index = static_cast<std::size_t>(tile.index);
+    const float biased = innovation_tile({residual_, confirmed_, old_age_, samples_},
+                                         options_.innovation, tile, {new_age_, variance_});
+    newborn_[index] = biased > options_.birth ? newborn_basis(index) : 0;
     fresh_variance(tile);
     update_tile({coefficients_, prediction_, light_, samples_, old_age_, new_age_, newborn_}, tile,
                 bases_, output_);
   });
+}
+
+// The first basis that has no energy in the tile; 0 if all are in use.
+int EigenDenoiser::newborn_basis(std::size_t tile) const {
+  const auto& gram = sums_[tile].gram;
+  for (int k = 1; k < bases_.bases(); ++k) {
+    if (gram[static_cast<std::size_t>(packed(k, k))] <= 1e-10 * gram[0]) return k;
+  }
+  return 0;
 }
 
 // One frame's variance at new pixels: that of luminance over the 7 x 7 pixels around, whose

@@ -21,6 +21,8 @@ struct EigenOptions {
   AtrousOptions atrous;
   /// [0, 1] of the squared luminance: a tile whose variances all lie below it is not filtered.
   float quiet = 1e-5f;
+  /// [0, 1] of a tile's pixels whose history is biased before another basis is born there.
+  float birth = 0.25f;
 
   void validate() const;  ///< throws std::invalid_argument naming the field
 };
@@ -44,12 +46,14 @@ class EigenDenoiser final : public Denoiser {
   void load(StateReader& in) override;
 
  private:
-  void check_frame() const;
+  void start_frame(const StageTime& time);
+  [[nodiscard]] bool is_empty(const Tile& tile) const;
   void warp_history();
   void warp_tile(const Tile& tile);
   void resample(FrameSource& source);
   void merge_samples(const Tile& tile, bool resampled);
   void project();
+  [[nodiscard]] int newborn_basis(std::size_t tile) const;
   void update();
   void filter();
   void fresh_variance(const Tile& tile);

@@ -32,10 +32,13 @@ struct InnovationOutputs {
 /// is the squared bias that noise does not explain. The history of n frames is off by v/n + b^2,
 /// this frame's mean over s times the regular samples by v/s, so the Kalman gain that balances them
 /// is
-///   w = (v/n + b^2) / (v/n + b^2 + v/s),   and the new age s/w, at most max_age.
-/// Without bias that is n + s. New pixels start at age s. Unconfirmed pixels (no usable sample)
-/// keep their age. The variance of one frame is a running mean of v over min(n, 16) frames.
-void innovation_tile(const InnovationInputs& in, const InnovationOptions& options, const Tile& tile,
-                     const InnovationOutputs& out);
+///   w = (v/n + b^2) / (v/n + b^2 + v/s),   and the new age s/w, at most max(max_age, s).
+/// Without bias, or with N = 1, that is n + s. New pixels start at age s. Unconfirmed pixels (no
+/// usable sample) keep their age. The variance of one frame is a running mean of v over min(n, 16)
+/// frames.
+///
+/// Returns the share of the confirmed pixels of the tile that have such a bias.
+float innovation_tile(const InnovationInputs& in, const InnovationOptions& options,
+                      const Tile& tile, const InnovationOutputs& out);
 
 }  // namespace eigenlight
