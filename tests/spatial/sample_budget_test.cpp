@@ -1,0 +1,172 @@
+#include "spatial/sample_budget.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/support/extents.h"
+#include "tests/support/random_frames.h"
+
+namespace eigenlight {
+namespace {
+
+struct Scene {
+  explicit Scene(Extent extent, std::uint32_t seed = 1)
+      : frame(make_random_frame({.extent = extent, .seed = seed}, 2)), age(extent), extra(extent) {
+    for (int y = 0; y < extent.height; ++y) {
+      for (int x = 0; x < extent.width; ++x) {
+        PixelRandom random(seed, x, y);
+        // Half old, a fifth new, the rest in between.
+        const float kind = random.uniform();
+        age(x, y) = kind < 0.2f ? 0.0f : kind < 0.5f ? random.between(0.0f, 16.0f) : 64.0f;
+      }
+    }
+  }
+  BudgetStats run(const BudgetOptions& options) {
+    SampleBudget budget(age.extent(), options);
+    return budget.process(frame, age, extra);
+  }
+  [[nodiscard]] std::int64_t surface() const {
+    return count([](int) { return 1; });
+  }
+  [[nodiscard]] std::int64_t granted() const {
+    return count([](int samples) { return samples; });
+  }
+  // Sum of value(extra) over the pixels with surface.
+  template <typename Value>
+  [[nodiscard]] std::int64_t count(const Value& value) const {
+    std::int64_t sum = 0;
+    for (int y = 0; y < age.height(); ++y) {
+      for (int x = 0; x < age.width(); ++x) {
+        if (frame.surface.id(x, y) != 0) sum += value(extra(x, y));
+      }
+    }
+    return sum;
+  }
+  Frame frame;
+  Plane<float> age;
+  Plane<std::uint8_t> extra;
+};
+
+// Water filling by trial: the highest level, in whole samples, that the limit allows.
+int brute_force_level(const Scene& scene, const BudgetOptions& options) {
+  const int spp = scene.frame.spp;
+  const double limit = options.share * spp * static_cast<double>(scene.surface());
+  const int highest =
+      static_cast<int>(std::min(255.0f, (options.enough - 1.0f) * static_cast<float>(spp)));
+  int best = 0;
+  for (int level = 0; level <= highest; ++level) {
+    std::int64_t cost = 0;
+    for (int y = 0; y < scene.age.height(); ++y) {
+      for (int x = 0; x < scene.age.width(); ++x) {
+        if (scene.frame.surface.id(x, y) == 0) continue;
+        const int held = static_cast<int>(std::floor(scene.age(x, y) * static_cast<float>(spp)));
+        cost += std::clamp(level - held, 0, options.most_per_pixel);
+      }
+    }
+    if (static_cast<double>(cost) <= limit) best = level;
+  }
+  return best;
+}
+
+TEST(SampleBudget, AgreesWithBruteForce) {
+  for (const Extent extent : kSweepExtents) {
+    for (const double share : {0.0, 0.05, 0.3, 1.0, 20.0}) {
+      for (const int most : {0, 3, 120}) {
+        const BudgetOptions options{share, most, 12.0f};
+        Scene scene(extent);
+        const BudgetStats stats = scene.run(options);
+        const int level = brute_force_level(scene, options);
+        EXPECT_EQ(stats.level, 1.0f + static_cast<float>(level) / 3.0f);
+        EXPECT_EQ(stats.samples, scene.granted());
+        for (int y = 0; y < extent.height; ++y) {
+          for (int x = 0; x < extent.width; ++x) {
+            const int held = static_cast<int>(std::floor(scene.age(x, y) * 3.0f));
+            const int wanted =
+                scene.frame.surface.id(x, y) == 0 ? 0 : std::clamp(level - held, 0, most);
+            ASSERT_EQ(scene.extra(x, y), wanted) << x << ", " << y;
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(SampleBudget, NeverExceedsTheLimit) {
+  for (std::uint32_t seed = 1; seed < 20; ++seed) {
+    for (const double share : {0.01, 0.1, 0.5, 2.0}) {
+      Scene scene({65, 17}, seed);
+      const BudgetStats stats = scene.run({share, 120, 200.0f});
+      EXPECT_EQ(stats.samples, scene.granted());
+      EXPECT_LE(static_cast<double>(stats.samples),
+                share * 3.0 * static_cast<double>(scene.surface()));
+    }
+  }
+}
+
+TEST(SampleBudget, ServesTheYoungestFirst) {
+  Scene scene({65, 17});
+  const BudgetStats stats = scene.run({0.3, 255, 12.0f});
+  ASSERT_GT(stats.samples, 0);
+  for (int y = 0; y < 17; ++y) {
+    for (int x = 0; x < 65; ++x) {
+      if (scene.frame.surface.id(x, y) == 0) {
+        EXPECT_EQ(scene.extra(x, y), 0);
+        continue;
+      }
+      // This frame's own samples included, nobody that got some is above the level by more than the
+      // one sample of rounding, and nobody below it got none.
+      const float after = scene.age(x, y) + 1.0f + static_cast<float>(scene.extra(x, y)) / 3.0f;
+      EXPECT_GE(after, stats.level - 1e-4f) << x << ", " << y;
+      EXPECT_TRUE(scene.extra(x, y) == 0 || after < stats.level + 1.0f / 3.0f + 1e-4f);
+    }
+  }
+}
+
+TEST(SampleBudget, CapsEachPixelAndLeavesOldOnesAlone) {
+  Scene scene({65, 17});
+  scene.run({100.0, 5, 12.0f});
+  std::int64_t most = 0;
+  for (int y = 0; y < 17; ++y) {
+    for (int x = 0; x < 65; ++x) {
+      most = std::max<std::int64_t>(most, scene.extra(x, y));
+      EXPECT_TRUE(scene.age(x, y) < 11.0f || scene.extra(x, y) == 0);
+    }
+  }
+  EXPECT_EQ(most, 5);
+}
+
+TEST(SampleBudget, IsEmptyForSkyAloneAndForNothingToSpend) {
+  Scene scene({65, 17});
+  EXPECT_EQ(scene.run({0.0, 120, 12.0f}).samples, 0);
+  EXPECT_EQ(scene.granted(), 0);
+  scene.frame.surface.id.fill(0);
+  const BudgetStats stats = scene.run({1.0, 120, 12.0f});
+  EXPECT_EQ(stats.samples, 0);
+  EXPECT_EQ(stats.pixels, 0);
+}
+
+TEST(SampleBudget, CountsThePixelsItServes) {
+  Scene scene({191, 107});
+  const BudgetStats stats = scene.run({0.5, 120, 12.0f});
+  EXPECT_EQ(stats.pixels, scene.count([](int samples) { return samples > 0 ? 1 : 0; }));
+}
+
+TEST(SampleBudget, RefusesOtherExtentsAndBadOptions) {
+  Scene scene({65, 17});
+  SampleBudget other({64, 17}, {});
+  EXPECT_THROW((void)other.process(scene.frame, scene.age, scene.extra), std::invalid_argument);
+  const auto refused = [](double share, int most, float enough) {
+    EXPECT_THROW(SampleBudget({8, 8}, {share, most, enough}), std::invalid_argument);
+  };
+  refused(-0.1, 120, 12.0f);
+  refused(101.0, 120, 12.0f);
+  refused(1.0, -1, 12.0f);
+  refused(1.0, 256, 12.0f);
+  refused(1.0, 120, 0.5f);
+  refused(1.0, 120, std::nanf(""));
+}
+
+}  // namespace
+}  // namespace eigenlight
