@@ -26,10 +26,11 @@ struct BudgetStats {
   float level = 0.0f;        ///< frames' worth of samples that every pixel reaches
 };
 
-/// Fills the youngest pixels first (water filling): extra(p) = spp * max(0, level - 1 - age(p)),
-/// rounded down and at most most_per_pixel, with the highest level <= enough at which the sum stays
-/// within share * spp * (surface pixels). `age` counts the history without this frame, so that a
-/// pixel holds age + 1 + extra / spp frames' worth afterwards. Pixels without surface get none.
+/// Fills the youngest pixels first (water filling), in whole samples:
+///   extra(p) = min(max(0, spp * (level - 1) - floor(spp * age(p))), most_per_pixel)
+/// with the highest level <= enough at which the sum stays within share * spp * (surface pixels).
+/// `age` counts the history without this frame, so that a pixel holds age + 1 + extra / spp frames'
+/// worth afterwards. Pixels without surface get none.
 class SampleBudget {
  public:
   SampleBudget(Extent extent, const BudgetOptions& options);
