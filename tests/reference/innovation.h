@@ -1,0 +1,49 @@
+// Twin of temporal/innovation: one pixel, its window summed directly, in double.
+#pragma once
+
+#include <algorithm>
+
+#include "temporal/innovation.h"
+
+namespace eigenlight::reference {
+
+struct Innovation {
+  double age = 0.0;
+  double variance = 0.0;
+};
+
+/// `variance` is that of the history.
+inline Innovation innovation(const InnovationInputs& in, const InnovationOptions& options,
+                             glm::ivec2 p, double variance) {
+  double count = 0.0, sum = 0.0;
+  const auto over_window = [&](const auto& visit) {
+    for (int y = p.y - 4; y <= p.y + 4; ++y) {
+      for (int x = p.x - 4; x <= p.x + 4; ++x) {
+        if (in.residual.extent().contains(x, y) && in.confirmed(x, y) > 0.0f) {
+          visit(static_cast<double>(in.residual(x, y)));
+        }
+      }
+    }
+  };
+  over_window([&](double e) {
+    count += 1.0;
+    sum += e;
+  });
+  const double n = in.age(p.x, p.y), s = in.samples(p.x, p.y);
+  if (!(n > 0.0)) return {s, variance};
+  if (!(in.confirmed(p.x, p.y) > 0.0f)) return {n, variance};
+  const double oldest = std::max(static_cast<double>(options.max_age), s);
+  if (count == 1.0) return {std::min(n + s, oldest), variance};
+  const double mu = sum / count;
+  double v = 0.0;
+  over_window([&](double e) { v += (e - mu) * (e - mu) / count; });
+
+  const double standard_error = v / count * (1.0 + 1.0 / n);
+  const double bias = std::max(0.0, mu * mu - options.threshold * standard_error);
+  const double history = v / n + bias, fresh = v / s;
+  const double w = history + fresh > 0.0 ? history / (history + fresh) : s / (n + s);
+  const double frames = std::min(n, 15.0) + 1.0;
+  return {std::min(s / w, oldest), variance + (v - variance) / frames};
+}
+
+}  // namespace eigenlight::reference
