@@ -15,7 +15,8 @@ void for_pixels(const Tile& tile, const Visit& visit) {
   }
 }
 
-// Below 1e-12 of its former energy a basis is what rounding of floats leaves of a dependent one.
+// Below 1e-12 of its former energy an image is what the rounding of floats leaves when a multiple
+// of itself is taken off: 1e-14 for each subtraction.
 constexpr double kLost = 1e-12;
 
 // combination(i, j), j <= i: how much of the old basis j the i-th orthogonal one holds, given all
@@ -137,9 +138,12 @@ void ImagePca::deflate_and_measure(const PcaFrame& frame, const BasisField& base
         const double v = static_cast<double>(bases.value(x, y, c, i));
         sum[0] += static_cast<double>(residual) * v;
         sum[1] += v * v;
+        sum[2] += static_cast<double>(residual) * static_cast<double>(residual);
       }
     });
   });
+  if (i == 0) factors.energy = sums[2];
+  factors.lost = !(sums[2] > kLost * factors.energy);
   factors.starts = i + 1 == frame.number || !(sums[1] > 0.0);
   factors.dot = factors.starts ? 0.0 : sums[0] / std::sqrt(sums[1]);
 }
@@ -150,7 +154,8 @@ void ImagePca::advance(const PcaFrame& frame, BasisField& bases, int i, Factors&
       const double w = static_cast<double>(frame.weight(x, y));
       if (!(w > 0.0)) return;
       for (int c = 0; c < 3; ++c) {
-        const double u = static_cast<double>(residual_[static_cast<std::size_t>(c)](x, y));
+        const float residual = residual_[static_cast<std::size_t>(c)](x, y);
+        const double u = factors.lost ? 0.0 : static_cast<double>(residual);
         float& value = bases.value(x, y, c, i);
         const double learned = (1.0 - w) * static_cast<double>(value) + w * u * factors.dot;
         value = static_cast<float>(factors.starts ? u : learned);

@@ -34,8 +34,9 @@ class ImagePca {
   ///   v_i <- u_i                                       if i = n, or |v_i| = 0
   ///   v_i <- (1 - w) v_i + w u_i (u_i . v_i / |v_i|)   else
   ///   u_(i+1) = u_i - (u_i . v_i / |v_i|) v_i / |v_i|
-  /// A basis without length has no direction to learn in; it starts again, as at i = n. Pixels of
-  /// weight 0 keep their values.
+  /// A basis without length has no direction to learn in; it starts again, as at i = n. A u_i with
+  /// less than 1e-12 of the energy of u is rounding, of which no basis shall be made: it counts as
+  /// 0. Pixels of weight 0 keep their values.
   void update(const PcaFrame& frame, BasisField& bases);
 
   /// out = sum over i of (u . v_i / |v_i|) v_i / |v_i|, at all pixels. Returns the number of bases
@@ -46,8 +47,10 @@ class ImagePca {
   using Sums = std::array<double, kMaxBases*(kMaxBases + 1) / 2>;
   struct Factors {
     double projection = 0.0;  ///< (u_(i-1) . v_(i-1)) / |v_(i-1)|^2: what is yet to be taken off u
+    double energy = 0.0;      ///< |u|^2
     double dot = 0.0;         ///< u_i . v_i / |v_i|
     bool starts = false;
+    bool lost = false;  ///< u_i is rounding
   };
 
   [[nodiscard]] Sums reduce(const std::function<void(const Tile&, Sums&)>& add);
