@@ -126,21 +126,28 @@ void ImagePca::update(const PcaFrame& frame, BasisField& bases) {
 
 void ImagePca::deflate_and_measure(const PcaFrame& frame, const BasisField& bases, int i,
                                    Factors& factors) {
+  const int floats = bases.pixel_floats(), last = std::max(i - 1, 0);
+  const double projection = i > 0 ? factors.projection : 0.0;
   const Sums sums = reduce([&](const Tile& tile, Sums& sum) {
-    for_pixels(tile, [&](int x, int y) {
-      if (!(frame.weight(x, y) > 0.0f)) return;
-      for (int c = 0; c < 3; ++c) {
-        float& residual = residual_[static_cast<std::size_t>(c)](x, y);
-        if (i > 0) {
-          residual -= static_cast<float>(factors.projection *
-                                         static_cast<double>(bases.value(x, y, c, i - 1)));
+    double dot = 0.0, length = 0.0, energy = 0.0;
+    for (int y = tile.y0; y < tile.y1; ++y) {
+      const float* weight = frame.weight.row(y);
+      for (std::size_t c = 0; c < 3; ++c) {
+        float* residual = residual_[c].row(y);
+        const float* values = bases.pixel(tile.x0, y) + static_cast<int>(c) * bases.bases();
+        for (int x = tile.x0; x < tile.x1; ++x, values += floats) {
+          if (!(weight[x] > 0.0f)) continue;
+          residual[x] -= static_cast<float>(projection * static_cast<double>(values[last]));
+          const double u = static_cast<double>(residual[x]), v = static_cast<double>(values[i]);
+          dot += u * v;
+          length += v * v;
+          energy += u * u;
         }
-        const double v = static_cast<double>(bases.value(x, y, c, i));
-        sum[0] += static_cast<double>(residual) * v;
-        sum[1] += v * v;
-        sum[2] += static_cast<double>(residual) * static_cast<double>(residual);
       }
-    });
+    }
+    sum[0] = dot;
+    sum[1] = length;
+    sum[2] = energy;
   });
   if (i == 0) factors.energy = sums[2];
   factors.lost = !(sums[2] > kLost * factors.energy);
@@ -149,21 +156,28 @@ void ImagePca::deflate_and_measure(const PcaFrame& frame, const BasisField& base
 }
 
 void ImagePca::advance(const PcaFrame& frame, BasisField& bases, int i, Factors& factors) {
+  const int floats = bases.pixel_floats();
   const Sums sums = reduce([&](const Tile& tile, Sums& sum) {
-    for_pixels(tile, [&](int x, int y) {
-      const double w = static_cast<double>(frame.weight(x, y));
-      if (!(w > 0.0)) return;
-      for (int c = 0; c < 3; ++c) {
-        const float residual = residual_[static_cast<std::size_t>(c)](x, y);
-        const double u = factors.lost ? 0.0 : static_cast<double>(residual);
-        float& value = bases.value(x, y, c, i);
-        const double learned = (1.0 - w) * static_cast<double>(value) + w * u * factors.dot;
-        value = static_cast<float>(factors.starts ? u : learned);
-        const double v = static_cast<double>(value);
-        sum[0] += u * v;
-        sum[1] += v * v;
+    double dot = 0.0, length = 0.0;
+    for (int y = tile.y0; y < tile.y1; ++y) {
+      const float* weight = frame.weight.row(y);
+      for (std::size_t c = 0; c < 3; ++c) {
+        const float* residual = residual_[c].row(y);
+        float* value = bases.pixel(tile.x0, y) + static_cast<int>(c) * bases.bases() + i;
+        for (int x = tile.x0; x < tile.x1; ++x, value += floats) {
+          const double w = static_cast<double>(weight[x]);
+          if (!(w > 0.0)) continue;
+          const double u = factors.lost ? 0.0 : static_cast<double>(residual[x]);
+          const double learned = (1.0 - w) * static_cast<double>(*value) + w * u * factors.dot;
+          *value = static_cast<float>(factors.starts ? u : learned);
+          const double v = static_cast<double>(*value);
+          dot += u * v;
+          length += v * v;
+        }
       }
-    });
+    }
+    sum[0] = dot;
+    sum[1] = length;
   });
   factors.projection = sums[1] > 0.0 ? sums[0] / sums[1] : 0.0;
 }
