@@ -49,6 +49,7 @@ class AnalyticSource final : public FrameSource {
   [[nodiscard]] bool next(Frame& frame) override {
     if (next_ == options_.first_frame + options_.frames) return false;
     const int index = next_++;
+    resampled_ = 0;
     frame.resize(options_.extent);
     frame.index = index;
     frame.previous_index = index - 1;
@@ -61,7 +62,6 @@ class AnalyticSource final : public FrameSource {
       for (int x = 0; x < options_.extent.width; ++x) fill({x, y}, frame);
     }
     options_.edit(frame);
-    resampled_ = 0;
     return true;
   }
 
