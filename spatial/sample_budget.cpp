@@ -5,9 +5,10 @@
 namespace eigenlight {
 namespace {
 
-// Age in whole samples, saturated to the last bin.
+// Age in whole samples, saturated to the last bin. To the nearest, because most ages are whole
+// numbers but for the rounding of their warp, and must not lose a sample to it.
 int age_samples(float age, int spp) {
-  return static_cast<int>(std::min(age * static_cast<float>(spp), 255.0f));
+  return static_cast<int>(std::min(age * static_cast<float>(spp) + 0.5f, 255.0f));
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ struct BudgetStats {
 };
 
 /// Fills the youngest pixels first (water filling), in whole samples:
-///   extra(p) = min(max(0, spp * (level - 1) - floor(spp * age(p))), most_per_pixel)
+///   extra(p) = min(max(0, spp * (level - 1) - round(spp * age(p))), most_per_pixel)
 /// with the highest level <= enough at which the sum stays within share * spp * (surface pixels).
 /// `age` counts the history without this frame, so that a pixel holds age + 1 + extra / spp frames'
 /// worth afterwards. Pixels without surface get none.
