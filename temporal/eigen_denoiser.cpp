@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "reproject/warp.h"
 #include "temporal/predict.h"
@@ -159,9 +160,12 @@ void EigenDenoiser::merge_samples(const Tile& tile, bool resampled) {
       for (std::size_t c = 0; c < 3; ++c) {
         const float more = extra > 0.0f ? extra * extra_mean_[c](x, y) : 0.0f;
         light_[c](x, y) = (regular * frame_.indirect[c](x, y) + more) * scale;
-        sum += light_[c](x, y);
+        sum += std::abs(light_[c](x, y));
       }
-      const bool usable = surface && std::isfinite(sum);
+      const bool usable = surface && sum <= kLargestLight;  // NaN fails too
+      if (!usable) {
+        for (auto& plane : light_) plane(x, y) = std::numeric_limits<float>::quiet_NaN();
+      }
       samples_(x, y) = usable ? (regular + extra) / regular : 0.0f;
       count.fresh += surface && old_age_(x, y) == 0.0f ? 1 : 0;
       count.non_finite += surface && !usable ? 1 : 0;

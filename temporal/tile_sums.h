@@ -10,6 +10,10 @@
 
 namespace eigenlight {
 
+/// Light beyond this magnitude counts as not finite: float holds its square, and the sum of a
+/// window of 81 of them.
+inline constexpr float kLargestLight = 1e18f;
+
 /// Index of (i, j), i <= j, in a packed upper triangle.
 [[nodiscard]] constexpr int packed(int i, int j) { return j * (j + 1) / 2 + i; }
 
@@ -33,7 +37,7 @@ struct SumInputs {
 /// Adds the pixels of `tile` (at most kSegment wide) to `sums`. A pixel counts with
 ///   m = n / (n + 1) / (variance + 0.01 * luminance(V_0)^2)
 /// (the inverse of its expected squared innovation, n its age), and with 0 where it has no history
-/// or u is not finite. Sums along a row are in float, over rows in double.
+/// or u is not finite or beyond kLargestLight. Sums along a row are in float, over rows in double.
 void accumulate_tile(const SumInputs& in, const Tile& tile, TileSums& sums);
 
 }  // namespace eigenlight

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <limits>
 
 #include "temporal/tile_sums.h"
 
@@ -30,7 +29,7 @@ void LoadRow(const SumInputs& in, const Tile& segment, Row& row) {
   const int bases = in.bases.bases(), lanes = static_cast<int>(hn::Lanes(d));
   const int count = segment.x1 - segment.x0;
   row.vectors = (count + lanes - 1) / lanes;
-  const VF largest = hn::Set(d, std::numeric_limits<float>::max());
+  const VF largest = hn::Set(d, kLargestLight);
   for (int i = 0; i < count; i += lanes) {
     VF u[3], v[3];
     for (int c = 0; c < 3; ++c) {

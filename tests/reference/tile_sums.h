@@ -23,7 +23,7 @@ inline TileSums tile_sums(const SumInputs& in, const Tile& tile) {
       for (int c = 0; c < 3; ++c) {
         u[c] = in.frame.indirect[static_cast<std::size_t>(c)](x, y);
         r[c] = u[c] - v.value(x, y, c, 0);
-        finite = finite && std::isfinite(u[c]);
+        finite = finite && std::abs(u[c]) <= kLargestLight;
       }
       if (!(n > 0.0) || !finite) continue;
       const double steady =
