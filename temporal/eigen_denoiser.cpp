@@ -195,7 +195,10 @@ void EigenDenoiser::project() {
 
 void EigenDenoiser::update() {
   for_each_tile(tiles_, [&](const Tile& tile) {
-    if (is_empty(tile)) return;
+    if (is_empty(tile)) {
+      clear_tile(tile);
+      return;
+    }
     const auto index = static_cast<std::size_t>(tile.index);
     const float biased = innovation_tile({residual_, confirmed_, old_age_, samples_},
                                          options_.innovation, tile, {new_age_, variance_});
@@ -204,6 +207,14 @@ void EigenDenoiser::update() {
     update_tile({coefficients_, prediction_, light_, samples_, old_age_, new_age_, newborn_}, tile,
                 bases_, output_);
   });
+}
+
+// What an earlier frame showed there is gone.
+void EigenDenoiser::clear_tile(const Tile& tile) {
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    for (auto& plane : output_) std::fill(plane.at(tile.x0, y), plane.row(y) + tile.x1, 0.0f);
+    std::fill(new_age_.at(tile.x0, y), new_age_.row(y) + tile.x1, 0.0f);
+  }
 }
 
 // The first basis that has no energy in the tile; 0 if all are in use.

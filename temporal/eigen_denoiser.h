@@ -55,6 +55,7 @@ class EigenDenoiser final : public Denoiser {
   void project();
   [[nodiscard]] int newborn_basis(std::size_t tile) const;
   void update();
+  void clear_tile(const Tile& tile);
   void filter();
   void fresh_variance(const Tile& tile);
   void keep_history();
