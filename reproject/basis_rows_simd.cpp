@@ -1,9 +1,11 @@
+#include <cstdint>
 #include <cstring>
 
 #include "reproject/basis_rows.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "reproject/basis_rows_simd.cpp"
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -42,36 +44,74 @@ void Save(const BasisRows& rows, const Tile& row, BasisField& field) {
 
 #else
 
-using D = hn::FixedTag<float, 4>;
+// Two groups of four pixels side by side where vectors are wide enough.
+using D = hn::CappedTag<float, 8>;
 using V = hn::Vec<D>;
+constexpr int kGroup = static_cast<int>(hn::MaxLanes(D()));
 
-// Turns four rows of four values into their columns.
+// Turns four rows of four values into their columns, in each half of the vectors.
 void Transpose(V& a, V& b, V& c, V& d) {
   const D tag;
-  const V ab_low = hn::InterleaveLower(tag, a, b), ab_high = hn::InterleaveUpper(tag, a, b);
-  const V cd_low = hn::InterleaveLower(tag, c, d), cd_high = hn::InterleaveUpper(tag, c, d);
-  a = hn::ConcatLowerLower(tag, cd_low, ab_low);
-  b = hn::ConcatUpperUpper(tag, cd_low, ab_low);
-  c = hn::ConcatLowerLower(tag, cd_high, ab_high);
-  d = hn::ConcatUpperUpper(tag, cd_high, ab_high);
+  const hn::Repartition<std::uint64_t, D> pairs;
+  const auto lower = [&](V x, V y) { return hn::BitCast(pairs, hn::InterleaveLower(tag, x, y)); };
+  const auto upper = [&](V x, V y) { return hn::BitCast(pairs, hn::InterleaveUpper(tag, x, y)); };
+  const auto ab_low = lower(a, b), ab_high = upper(a, b);
+  const auto cd_low = lower(c, d), cd_high = upper(c, d);
+  a = hn::BitCast(tag, hn::InterleaveLower(pairs, ab_low, cd_low));
+  b = hn::BitCast(tag, hn::InterleaveUpper(pairs, ab_low, cd_low));
+  c = hn::BitCast(tag, hn::InterleaveLower(pairs, ab_high, cd_high));
+  d = hn::BitCast(tag, hn::InterleaveUpper(pairs, ab_high, cd_high));
 }
 
-// Four pixels at a time; a last group that is not whole ends up in a copy.
+// Four floats of the pixels n and, in wide vectors, n + 4.
+template <typename Tag>
+hn::Vec<Tag> LoadPixels(Tag tag, const float* n, const float* n_plus_4) {
+  if constexpr (hn::MaxLanes(Tag()) == 4) {
+    return hn::Load(tag, n);
+  } else {
+    const hn::Half<Tag> half;
+    return hn::Combine(tag, hn::Load(half, n_plus_4), hn::Load(half, n));
+  }
+}
+
+template <typename Tag>
+void StorePixels(Tag tag, hn::Vec<Tag> v, float* n, float* n_plus_4) {
+  if constexpr (hn::MaxLanes(Tag()) == 4) {
+    hn::Store(v, tag, n);
+  } else {
+    const hn::Half<Tag> half;
+    hn::Store(hn::LowerHalf(half, v), half, n);
+    hn::Store(hn::UpperHalf(half, v), half, n_plus_4);
+  }
+}
+
+// Where each float of a pixel goes to.
+struct RowTable {
+  float* row[3 * kMaxBases + 4];
+
+  RowTable(BasisRows& rows, float* spare, int bases) {
+    for (int j = 0; j < BasisField::pixel_floats(bases); ++j) row[j] = Row(rows, spare, bases, j);
+  }
+};
+
+// A group of pixels at a time; a last one that is not whole reads its first pixel again.
 void Load(const BasisField& field, const Tile& row, BasisRows& rows) {
   const D tag;
   alignas(64) float spare[kSegment];
+  const RowTable table(rows, spare, field.bases());
   const int floats = field.pixel_floats(), count = row.x1 - row.x0;
   const float* in = field.pixel(row.x0, row.y0);
-  for (int i = 0; i < count; i += 4) {
-    const auto pixel = [&](int n) { return in + (i + (i + n < count ? n : 0)) * floats; };
+  const std::size_t below = row.y0 + 1 < field.extent().height ? field.data().stride() : 0;
+  for (int i = 0; i < count; i += kGroup) {
+    // Rows of a tile are too short for the hardware to foresee the next one.
+    for (int j = 0; j < kGroup * floats; j += 16) hwy::Prefetch(in + i * floats + j + below);
+    const float* pixel[8];
+    for (int n = 0; n < kGroup; ++n) pixel[n] = in + (i + (i + n < count ? n : 0)) * floats;
     for (int j = 0; j < floats; j += 4) {
-      V a = hn::Load(tag, pixel(0) + j), b = hn::Load(tag, pixel(1) + j);
-      V c = hn::Load(tag, pixel(2) + j), d = hn::Load(tag, pixel(3) + j);
-      Transpose(a, b, c, d);
-      hn::Store(a, tag, Row(rows, spare, field.bases(), j) + i);
-      hn::Store(b, tag, Row(rows, spare, field.bases(), j + 1) + i);
-      hn::Store(c, tag, Row(rows, spare, field.bases(), j + 2) + i);
-      hn::Store(d, tag, Row(rows, spare, field.bases(), j + 3) + i);
+      V v[4];
+      for (int n = 0; n < 4; ++n) v[n] = LoadPixels(tag, pixel[n] + j, pixel[n + kGroup - 4] + j);
+      Transpose(v[0], v[1], v[2], v[3]);
+      for (int n = 0; n < 4; ++n) hn::Store(v[n], tag, table.row[j + n] + i);
     }
   }
 }
@@ -79,15 +119,18 @@ void Load(const BasisField& field, const Tile& row, BasisRows& rows) {
 void Save(const BasisRows& rows, const Tile& row, BasisField& field) {
   const D tag;
   alignas(64) float zero[kSegment] = {};
+  const RowTable table(const_cast<BasisRows&>(rows), zero, field.bases());
   const int floats = field.pixel_floats(), count = row.x1 - row.x0;
-  const auto in = [&](int j) { return Row(const_cast<BasisRows&>(rows), zero, field.bases(), j); };
   float* out = field.pixel(row.x0, row.y0);
-  for (int i = 0; i < count; i += 4) {
+  // What lies beyond the last pixel goes where it does no harm.
+  alignas(64) float beyond[4];
+  for (int i = 0; i < count; i += kGroup) {
     for (int j = 0; j < floats; j += 4) {
-      V v[4] = {hn::Load(tag, in(j) + i), hn::Load(tag, in(j + 1) + i),
-                hn::Load(tag, in(j + 2) + i), hn::Load(tag, in(j + 3) + i)};
+      V v[4];
+      for (int n = 0; n < 4; ++n) v[n] = hn::Load(tag, table.row[j + n] + i);
       Transpose(v[0], v[1], v[2], v[3]);
-      for (int n = 0; n < 4 && i + n < count; ++n) hn::Store(v[n], tag, out + (i + n) * floats + j);
+      const auto pixel = [&](int n) { return i + n < count ? out + (i + n) * floats + j : beyond; };
+      for (int n = 0; n < 4; ++n) StorePixels(tag, v[n], pixel(n), pixel(n + kGroup - 4));
     }
   }
 }
