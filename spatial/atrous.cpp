@@ -43,6 +43,7 @@ std::int64_t surface_pixels(const Frame& frame, const Tile& tile) {
 
 void AtrousOptions::validate() const {
   EL_CHECK(passes >= 1 && passes <= 6, "passes {}: expected 1 to 6", passes);
+  EL_CHECK(radius == 1 || radius == 2, "radius {}: expected 1 or 2", radius);
   EL_CHECK(luminance_sigmas > 0.0f && luminance_sigmas <= 100.0f,
            "luminance_sigmas {}: expected (0, 100]", luminance_sigmas);
   EL_CHECK(plane_distance > 0.0f && plane_distance <= 1.0f,
@@ -58,30 +59,58 @@ Atrous::Atrous(Extent extent, const AtrousOptions& options)
   options.validate();
 }
 
-std::int64_t Atrous::process(const Frame& guides, float quiet, Planes<3>& color,
-                             Plane<float>& variance) {
+void Atrous::check(const Frame& guides, const Planes<3>& color,
+                   const Plane<float>& variance) const {
   const Extent extent = grid_.extent();
   EL_CHECK(guides.extent() == extent && color[0].extent() == extent && variance.extent() == extent,
            "a-trous filter made for {}x{}: got planes of another size", extent.width,
            extent.height);
+}
+
+void Atrous::run_pass(const Frame& guides, int pass, const std::function<bool(const Tile&)>& wanted,
+                      Planes<3>& color, Plane<float>& variance) {
+  const AtrousPass work{guides,   options_,       1 << pass,        color,
+                        variance, scratch_color_, scratch_variance_};
+  for_each_tile(grid_, [&](const Tile& tile) {
+    if (wanted(tile)) {
+      atrous_tile(work, tile);
+    } else {
+      copy_tile(work, tile);
+    }
+  });
+  std::swap(color, scratch_color_);
+  std::swap(variance, scratch_variance_);
+}
+
+std::int64_t Atrous::process(const Frame& guides, float quiet, Planes<3>& color,
+                             Plane<float>& variance) {
+  check(guides, color, variance);
   std::fill(skipped_.begin(), skipped_.end(), 0);
-  for (int i = 0; i < options_.passes; ++i) {
-    const AtrousPass pass{guides,   options_,       1 << i,           color,
-                          variance, scratch_color_, scratch_variance_};
-    for_each_tile(grid_, [&](const Tile& tile) {
-      const auto index = static_cast<std::size_t>(tile.index);
-      const std::int64_t surface = surface_pixels(guides, tile);
-      if (surface == 0 || is_quiet(color, variance, quiet, tile)) {
-        copy_tile(pass, tile);
-        if (i == 0) skipped_[index] = surface;
-      } else {
-        atrous_tile(pass, tile);
-      }
-    });
-    std::swap(color, scratch_color_);
-    std::swap(variance, scratch_variance_);
+  for (int pass = 0; pass < options_.passes; ++pass) {
+    run_pass(
+        guides, pass,
+        [&](const Tile& tile) {
+          const std::int64_t surface = surface_pixels(guides, tile);
+          if (surface > 0 && !is_quiet(color, variance, quiet, tile)) return true;
+          if (pass == 0) skipped_[static_cast<std::size_t>(tile.index)] = surface;
+          return false;
+        },
+        color, variance);
   }
   return std::accumulate(skipped_.begin(), skipped_.end(), std::int64_t{0});
+}
+
+void Atrous::process(const Frame& guides, std::span<const std::uint8_t> wanted, Planes<3>& color,
+                     Plane<float>& variance) {
+  check(guides, color, variance);
+  EL_CHECK(wanted.size() == static_cast<std::size_t>(grid_.count()), "{} wanted flags for {} tiles",
+           wanted.size(), grid_.count());
+  for (int pass = 0; pass < options_.passes; ++pass) {
+    run_pass(
+        guides, pass,
+        [&](const Tile& tile) { return wanted[static_cast<std::size_t>(tile.index)] != 0; }, color,
+        variance);
+  }
 }
 
 }  // namespace eigenlight

@@ -1,7 +1,10 @@
 // Edge-avoiding a-trous wavelet passes, steered by variance.
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <span>
+#include <vector>
 
 #include "frame/frame.h"
 #include "frame/tiles.h"
@@ -9,7 +12,8 @@
 namespace eigenlight {
 
 struct AtrousOptions {
-  int passes = 3;  ///< [1, 6]; pass i reaches 2 * 2^i pixels
+  int passes = 3;  ///< [1, 6]; pass i reaches radius * 2^i pixels
+  int radius = 2;  ///< 2: the 5 x 5 spline; 1: 3 x 3 binomial weights, a third of the cost
   /// (0, 100] standard deviations of luminance that still count as the same light.
   float luminance_sigmas = 3.0f;
   /// (0, 1] of the depth: distance off the pixel's plane that weighs a neighbor by 1/e.
@@ -19,8 +23,9 @@ struct AtrousOptions {
 };
 
 /// Dammertz et al. 2010 with the variance steering of Schied et al. 2017 (SVGF, section 4.4):
-///   out(p) = sum_q h(q) w(p, q) c(q) / sum_q h(q) w(p, q),  h the 5 x 5 B3-spline with holes,
-///   w = max(0, N_p . N_q)^64 * exp(-|N_p . (X_q - X_p)| / (plane_distance * depth_p)
+///   out(p) = sum_q h(q) w(p, q) c(q) / sum_q h(q) w(p, q),  h the 5 x 5 B3-spline (or 3 x 3
+///   binomial) with holes, w = max(0, N_p . N_q)^64 * exp(-|N_p . (X_q - X_p)| / (plane_distance *
+///   depth_p)
 ///                                  - |l_q - l_p| / (luminance_sigmas * sigma_p + 1e-4 l_p))
 /// where sigma_p^2 is the variance of luminance around p (3 x 3 Gaussian) and the exponential is
 /// (1 - x/8)^8, which ends at x = 8. Variances follow: var(p) = sum (h w)^2 var(q) / (sum h w)^2.
@@ -36,7 +41,15 @@ class Atrous {
   /// Returns the number of surface pixels that were skipped in the first pass.
   std::int64_t process(const Frame& guides, float quiet, Planes<3>& color, Plane<float>& variance);
 
+  /// The same for the tiles of stage_tiles() with wanted(tile index) != 0; the others are copied.
+  void process(const Frame& guides, std::span<const std::uint8_t> wanted, Planes<3>& color,
+               Plane<float>& variance);
+
  private:
+  void check(const Frame& guides, const Planes<3>& color, const Plane<float>& variance) const;
+  void run_pass(const Frame& guides, int pass, const std::function<bool(const Tile&)>& wanted,
+                Planes<3>& color, Plane<float>& variance);
+
   AtrousOptions options_;
   TileGrid grid_;
   Planes<3> scratch_color_;

@@ -17,7 +17,15 @@ using F = hn::ScalableTag<float>;
 using VF = hn::Vec<F>;
 using Line = float[kAtrousWidth];
 
-constexpr float kSpline[5] = {1.0f / 16, 1.0f / 4, 3.0f / 8, 1.0f / 4, 1.0f / 16};
+// Taps -2 .. 2 by radius: none, binomial, B3-spline.
+constexpr float kKernel[3][5] = {{0.0f, 0.0f, 1.0f, 0.0f, 0.0f},
+                                 {0.0f, 1.0f / 4, 1.0f / 2, 1.0f / 4, 0.0f},
+                                 {1.0f / 16, 1.0f / 4, 3.0f / 8, 1.0f / 4, 1.0f / 16}};
+
+float Weight(const AtrousPass& pass, int dx, int dy) {
+  const float* kernel = kKernel[pass.options.radius] + 2;
+  return kernel[dx] * kernel[dy];
+}
 
 VF Luminance(VF r, VF g, VF b) {
   const F d;
@@ -87,7 +95,7 @@ Center LoadCenter(const AtrousPass& pass, int x, int y, VF smooth_variance) {
   at.luminance_scale = hn::Div(hn::Set(d, 0.125f), hn::Add(tolerance, hn::Set(d, 1e-20f)));
 
   // The center tap always counts, whatever its normal.
-  const VF own = hn::Set(d, kSpline[2] * kSpline[2]);
+  const VF own = hn::Set(d, Weight(pass, 0, 0));
   for (int c = 0; c < 3; ++c) at.sum[c] = hn::Mul(own, color[c]);
   at.weight = own;
   at.variance = hn::Mul(hn::Mul(own, own), load(pass.variance));
@@ -139,7 +147,7 @@ void AddEdgeRow(const AtrousPass& pass, const TapRow& row, int x, int dy, int y,
   const F d;
   const int lanes = static_cast<int>(hn::Lanes(d)), last = pass.variance.width() - 1;
   alignas(64) float values[64];
-  for (int j = -2; j <= 2; ++j) {
+  for (int j = -pass.options.radius; j <= pass.options.radius; ++j) {
     if (j == 0 && dy == 0) continue;
     const int first = x + j * pass.step;
     const auto load = [&](const float* source) {
@@ -149,19 +157,19 @@ void AddEdgeRow(const AtrousPass& pass, const TapRow& row, int x, int dy, int y,
     const VF column = hn::Iota(d, static_cast<float>(first));
     const auto inside =
         hn::And(hn::Ge(column, hn::Zero(d)), hn::Le(column, hn::Set(d, static_cast<float>(last))));
-    const VF kernel = hn::IfThenElseZero(inside, hn::Set(d, kSpline[j + 2] * kSpline[dy + 2]));
+    const VF kernel = hn::IfThenElseZero(inside, hn::Set(d, Weight(pass, j, dy)));
     AddTap(row, column, hn::Set(d, static_cast<float>(y)), kernel, load, at);
   }
 }
 
 void AddRow(const AtrousPass& pass, const TapRow& row, int x, int dy, int y, Center& at) {
   const F d;
-  for (int j = -2; j <= 2; ++j) {
+  for (int j = -pass.options.radius; j <= pass.options.radius; ++j) {
     if (j == 0 && dy == 0) continue;
     const int first = x + j * pass.step;
     const auto load = [&](const float* source) { return hn::LoadU(d, source + first); };
     AddTap(row, hn::Iota(d, static_cast<float>(first)), hn::Set(d, static_cast<float>(y)),
-           hn::Set(d, kSpline[j + 2] * kSpline[dy + 2]), load, at);
+           hn::Set(d, Weight(pass, j, dy)), load, at);
   }
 }
 
@@ -184,7 +192,7 @@ void StoreCenter(const AtrousPass& pass, const Center& at, int x, int y, int cou
 
 void AtrousTile(const AtrousPass& pass, const Tile& tile) {
   const F d;
-  const int lanes = static_cast<int>(hn::Lanes(d)), reach = 2 * pass.step;
+  const int lanes = static_cast<int>(hn::Lanes(d)), reach = pass.options.radius * pass.step;
   const Extent extent = pass.variance.extent();
   alignas(64) Line smooth_variance = {};
   for (int y = tile.y0; y < tile.y1; ++y) {
@@ -192,7 +200,7 @@ void AtrousTile(const AtrousPass& pass, const Tile& tile) {
     for (int x = tile.x0; x < tile.x1; x += lanes) {
       Center at = LoadCenter(pass, x, y, hn::Load(d, smooth_variance + (x - tile.x0)));
       const bool inside = x - reach >= 0 && x + lanes + reach <= extent.width;
-      for (int dy = -2; dy <= 2; ++dy) {
+      for (int dy = -pass.options.radius; dy <= pass.options.radius; ++dy) {
         const int ty = y + dy * pass.step;
         if (ty < 0 || ty >= extent.height) continue;
         const TapRow row(pass, ty);

@@ -107,19 +107,27 @@ void CoefficientField::row(const Tile& row, int k, float* out) const {
   }
 }
 
-void solve_coefficients(std::span<const TileSums> sums, const ShrinkOptions& options,
-                        CoefficientField& field) {
+void solve_coefficients(std::span<const TileSums> sums, std::span<const double> expected,
+                        const ShrinkOptions& options, CoefficientField& field) {
   const TileGrid& grid = field.grid();
+  const int bases = field.bases();
   EL_CHECK(sums.size() == static_cast<std::size_t>(grid.count()), "{} tile sums for {} tiles",
            sums.size(), grid.count());
+  EL_CHECK(expected.empty() || expected.size() == sums.size() * static_cast<std::size_t>(bases),
+           "{} expected squares for {} tiles of {} bases", expected.size(), sums.size(), bases);
   parallel_for(grid.count(), [&](int index) {
-    const Solution s = solve(window_sums(sums, grid, index), field.bases());
+    const Solution s = solve(window_sums(sums, grid, index), bases);
     const auto out = field.tile(index);
-    for (int k = 0; k < field.bases(); ++k) {
+    for (int k = 0; k < bases; ++k) {
       const double square = s.delta[k] * s.delta[k];
-      const double kept =
+      double kept =
           square > 0.0 ? std::max(0.0, 1.0 - options.noise * s.variance[k] / square) : 0.0;
-      out[static_cast<std::size_t>(k)] = static_cast<float>(kept * s.delta[k]);
+      if (!expected.empty() && square > 0.0) {
+        const double m = expected[static_cast<std::size_t>(index * bases + k)];
+        kept = std::max(kept, m / (m + s.variance[k]));
+      }
+      const double delta = kept * s.delta[k];
+      out[static_cast<std::size_t>(k)] = static_cast<float>(k == 0 ? std::max(delta, -1.0) : delta);
     }
   });
 }

@@ -56,8 +56,13 @@ class CoefficientField {
 /// delta_k^2) (positive-part James-Stein), with var from the observed spread of the pixels' own
 /// estimates. Without this a steady light would flicker by the noise of its gain.
 ///
-/// Bases without energy get delta 0. `sums` holds one entry per tile of the field's grid.
-void solve_coefficients(std::span<const TileSums> sums, const ShrinkOptions& options,
-                        CoefficientField& field);
+/// Where `expected` tells the mean square m of delta_k over past frames (entry tile * K + k; empty:
+/// not known), the Wiener factor m / (m + var) is taken if it keeps more: a basis in use is
+/// trusted.
+///
+/// Bases without energy get delta 0, and no gain falls below 0. `sums` holds one entry per tile of
+/// the field's grid.
+void solve_coefficients(std::span<const TileSums> sums, std::span<const double> expected,
+                        const ShrinkOptions& options, CoefficientField& field);
 
 }  // namespace eigenlight

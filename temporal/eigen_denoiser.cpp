@@ -14,10 +14,13 @@ namespace eigenlight {
 void EigenOptions::validate() const {
   taps.validate();
   shrink.validate();
+  correction.validate();
   innovation.validate();
   budget.validate();
+  guided.validate();
   atrous.validate();
-  EL_CHECK(birth >= 0.0f && birth <= 1.0f, "birth {}: expected [0, 1]", birth);
+  EL_CHECK(birth >= 0.0 && birth <= 1.0, "birth {}: expected [0, 1]", birth);
+  EL_CHECK(young >= 0.0f && young <= 255.0f, "young {}: expected [0, 255] frames", young);
   EL_CHECK(quiet >= 0.0f && quiet <= 1.0f, "quiet {}: expected [0, 1]", quiet);
 }
 
@@ -29,16 +32,21 @@ EigenDenoiser::EigenDenoiser(const DenoiserOptions& options, const EigenOptions&
       warped_bases_(extent_, options.bases),
       variance_(extent_),
       warped_variance_(extent_),
+      memory_(extent_, options.bases),
       budget_(extent_, parts.budget),
+      correction_(extent_, parts.correction),
+      guided_(extent_, parts.guided),
       atrous_(extent_, parts.atrous),
       coefficients_(extent_, options.bases),
+      learning_(extent_, options.bases),
       sums_(static_cast<std::size_t>(tiles_.count())),
-      newborn_(static_cast<std::size_t>(tiles_.count())),
       counts_(static_cast<std::size_t>(tiles_.count())),
       extra_(extent_),
+      young_(extent_),
       extra_mean_(make_planes<3>(extent_)),
       light_(make_planes<3>(extent_)),
       prediction_(make_planes<3>(extent_)),
+      guided_light_(make_planes<3>(extent_)),
       output_(make_planes<3>(extent_)),
       samples_(extent_),
       residual_(extent_),
@@ -96,6 +104,7 @@ void EigenDenoiser::warp_history() {
   if (report_.cut) {
     bases_.data().fill(0.0f);
     variance_.fill(0.0f);
+    memory_.reset();
   }
   const bool moving = !report_.cut && !still;
   for_each_tile(tiles_, [&](const Tile& tile) {
@@ -174,11 +183,16 @@ void EigenDenoiser::merge_samples(const Tile& tile, bool resampled) {
 }
 
 void EigenDenoiser::project() {
-  solve_coefficients(sums_, options_.shrink, coefficients_);
+  solve_coefficients(sums_, memory_.expected(), options_.shrink, coefficients_);
   for_each_tile(tiles_, [&](const Tile& tile) {
     predict_tile(bases_, coefficients_, light_, tile,
                  {prediction_, residual_, confirmed_, old_age_});
   });
+  const double corrected = correction_.process(
+      {frame_, light_, confirmed_, old_age_, samples_, variance_}, prediction_, residual_);
+  memory_.advance(coefficients_, learning_);
+  newborn_ = corrected > options_.birth ? memory_.free_slot() : 0;
+
   double rank = 0.0, tiles = 0.0;
   for (int i = 0; i < tiles_.count(); ++i) {
     if (counts_[static_cast<std::size_t>(i)].surface == 0) {
@@ -194,19 +208,21 @@ void EigenDenoiser::project() {
 }
 
 void EigenDenoiser::update() {
+  const int active = memory_.active();
   for_each_tile(tiles_, [&](const Tile& tile) {
     if (is_empty(tile)) {
       clear_tile(tile);
       return;
     }
-    const auto index = static_cast<std::size_t>(tile.index);
-    const float biased = innovation_tile({residual_, confirmed_, old_age_, samples_},
-                                         options_.innovation, tile, {new_age_, variance_});
-    newborn_[index] = biased > options_.birth ? newborn_basis(index) : 0;
+    innovation_tile({residual_, confirmed_, old_age_, samples_}, options_.innovation, tile,
+                    {new_age_, variance_});
     fresh_variance(tile);
-    update_tile({coefficients_, prediction_, light_, samples_, old_age_, new_age_, newborn_}, tile,
-                bases_, output_);
+    update_tile({coefficients_, learning_, prediction_, correction_.correction(), light_, samples_,
+                 old_age_, new_age_, active, newborn_},
+                tile, bases_, output_);
   });
+  if (newborn_ > 0) memory_.born(newborn_);
+  retire_bases();
 }
 
 // What an earlier frame showed there is gone.
@@ -217,13 +233,17 @@ void EigenDenoiser::clear_tile(const Tile& tile) {
   }
 }
 
-// The first basis that has no energy in the tile; 0 if all are in use.
-int EigenDenoiser::newborn_basis(std::size_t tile) const {
-  const auto& gram = sums_[tile].gram;
-  for (int k = 1; k < bases_.bases(); ++k) {
-    if (gram[static_cast<std::size_t>(packed(k, k))] <= 1e-10 * gram[0]) return k;
+// Clears the bases that no tile uses any more.
+void EigenDenoiser::retire_bases() {
+  for (const int k : memory_.retire()) {
+    for_each_tile(tiles_, [&](const Tile& tile) {
+      for (int y = tile.y0; y < tile.y1; ++y) {
+        for (int x = tile.x0; x < tile.x1; ++x) {
+          for (int c = 0; c < 3; ++c) bases_.value(x, y, c, k) = 0.0f;
+        }
+      }
+    });
   }
-  return 0;
 }
 
 // One frame's variance at new pixels: that of luminance over the 7 x 7 pixels around, whose
@@ -252,14 +272,40 @@ void EigenDenoiser::fresh_variance(const Tile& tile) {
 }
 
 void EigenDenoiser::filter() {
+  for_each_tile(tiles_, [&](const Tile& tile) { prepare_filter(tile); });
+  fill_young();
+  report_.skipped_filter = atrous_.process(frame_, options_.quiet, output_, output_variance_);
+}
+
+// Variances of the estimate, and which pixels are young.
+void EigenDenoiser::prepare_filter(const Tile& tile) {
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    for (int x = tile.x0; x < tile.x1; ++x) {
+      const float age = new_age_(x, y);
+      output_variance_(x, y) = age > 0.0f ? variance_(x, y) / age : 0.0f;
+      young_(x, y) = frame_.surface.id(x, y) != 0 && age < options_.young ? 1 : 0;
+    }
+  }
+}
+
+// Young pixels lean on what their surroundings say of such a surface (Bauszat 2011). The share that
+// they keep of their own grows with age; so does the share of their variance.
+void EigenDenoiser::fill_young() {
+  report_.skipped_guided = guided_.process({frame_, output_, new_age_, young_}, guided_light_);
+  if (report_.skipped_guided == static_cast<std::int64_t>(extent_.pixels())) return;
   for_each_tile(tiles_, [&](const Tile& tile) {
     for (int y = tile.y0; y < tile.y1; ++y) {
       for (int x = tile.x0; x < tile.x1; ++x) {
-        output_variance_(x, y) = new_age_(x, y) > 0.0f ? variance_(x, y) / new_age_(x, y) : 0.0f;
+        if (young_(x, y) == 0) continue;
+        const float own = new_age_(x, y) / options_.young;
+        for (std::size_t c = 0; c < 3; ++c) {
+          const float guided = std::max(guided_light_[c](x, y), 0.0f);
+          output_[c](x, y) = guided + own * (output_[c](x, y) - guided);
+        }
+        output_variance_(x, y) *= own * own;
       }
     }
   });
-  report_.skipped_filter = atrous_.process(frame_, options_.quiet, output_, output_variance_);
 }
 
 void EigenDenoiser::keep_history() {
@@ -289,6 +335,7 @@ void EigenDenoiser::save(StateWriter& out) const {
   out.value("bases", bases_.bases());
   out.plane("basis values", bases_.data());
   out.plane("variance", variance_);
+  memory_.save(out);
 }
 
 void EigenDenoiser::load(StateReader& in) {
@@ -310,6 +357,7 @@ void EigenDenoiser::load(StateReader& in) {
   expect("bases", bases, bases_.bases());
   in.plane("basis values", bases_.data());
   in.plane("variance", variance_);
+  memory_.load(in);
   expect("width", variance_.width(), extent_.width);
   expect("height", variance_.height(), extent_.height);
 }

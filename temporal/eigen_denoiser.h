@@ -6,23 +6,30 @@
 #include "reproject/basis_field.h"
 #include "reproject/taps.h"
 #include "spatial/atrous.h"
+#include "spatial/guided_filter.h"
 #include "spatial/sample_budget.h"
 #include "temporal/coefficients.h"
+#include "temporal/correction.h"
 #include "temporal/denoiser.h"
 #include "temporal/innovation.h"
+#include "temporal/light_memory.h"
 
 namespace eigenlight {
 
 struct EigenOptions {
   TapOptions taps;
   ShrinkOptions shrink;
+  CorrectionOptions correction;
   InnovationOptions innovation;
   BudgetOptions budget;
-  AtrousOptions atrous;
+  GuidedOptions guided;
+  AtrousOptions atrous{.passes = 4, .luminance_sigmas = 5.0f};
+  /// [0, 255] frames: younger pixels take the guided filter's value the more, the younger they are.
+  float young = 4.0f;
   /// [0, 1] of the squared luminance: a tile whose variances all lie below it is not filtered.
   float quiet = 1e-5f;
-  /// [0, 1] of a tile's pixels whose history is biased before another basis is born there.
-  float birth = 0.25f;
+  /// [0, 1] of the pixels that must need correction before another basis is born.
+  double birth = 0.1;
 
   void validate() const;  ///< throws std::invalid_argument naming the field
 };
@@ -53,10 +60,12 @@ class EigenDenoiser final : public Denoiser {
   void resample(FrameSource& source);
   void merge_samples(const Tile& tile, bool resampled);
   void project();
-  [[nodiscard]] int newborn_basis(std::size_t tile) const;
+  void retire_bases();
   void update();
   void clear_tile(const Tile& tile);
   void filter();
+  void fill_young();
+  void prepare_filter(const Tile& tile);
   void fresh_variance(const Tile& tile);
   void keep_history();
 
@@ -77,16 +86,19 @@ class EigenDenoiser final : public Denoiser {
   GBuffer history_surface_;
   BasisField bases_, warped_bases_;
   Plane<float> variance_, warped_variance_;  // of one frame's luminance
+  LightMemory memory_;
 
   // Scratch, and what the last frame left for the caller.
   SampleBudget budget_;
+  Correction correction_;
+  GuidedFilter guided_;
   Atrous atrous_;
-  CoefficientField coefficients_;
+  CoefficientField coefficients_, learning_;
   std::vector<TileSums> sums_;
-  std::vector<int> newborn_;
+  int newborn_ = 0;
   std::vector<TileCount> counts_;
-  Plane<std::uint8_t> extra_;
-  Planes<3> extra_mean_, light_, prediction_, output_;
+  Plane<std::uint8_t> extra_, young_;
+  Planes<3> extra_mean_, light_, prediction_, guided_light_, output_;
   Plane<float> samples_, residual_, confirmed_, old_age_, new_age_, output_variance_;
 };
 

@@ -36,21 +36,21 @@ void sum_row(const InnovationInputs& in, const Tile& tile, int y, Sums& sums) {
   }
 }
 
-// New age and variance of one pixel from its window; true if its history is biased.
-bool finish_pixel(const InnovationInputs& in, const InnovationOptions& options, int x, int y,
+// New age and variance of one pixel from its window.
+void finish_pixel(const InnovationInputs& in, const InnovationOptions& options, int x, int y,
                   float count, float sum, float square, const InnovationOutputs& out) {
   const float age = in.age(x, y), samples = in.samples(x, y);
   const bool confirmed = in.confirmed(x, y) > 0.0f;
   if (!confirmed) {
     // A new pixel starts; a pixel whose sample is unusable waits.
     out.age(x, y) = age > 0.0f ? age : samples;
-    return false;
+    return;
   }
   // An age below the frame's own samples would weigh them more than once.
   const float max_age = std::max(options.max_age, samples);
   if (count < 2.0f) {  // alone: no spread to test a mean against
     out.age(x, y) = std::min(age + samples, max_age);
-    return false;
+    return;
   }
   const float mean = sum / count;
   const float variance = std::max(square / count - mean * mean, 0.0f);
@@ -63,7 +63,6 @@ bool finish_pixel(const InnovationInputs& in, const InnovationOptions& options, 
   out.age(x, y) = std::min(samples / std::max(weight, samples / (2.0f * max_age)), max_age);
   const float step = std::max(1.0f / (age + 1.0f), 1.0f / 16.0f);
   out.variance(x, y) += step * (variance - out.variance(x, y));
-  return excess > 0.0f;
 }
 
 }  // namespace
@@ -73,12 +72,11 @@ void InnovationOptions::validate() const {
   EL_CHECK(max_age >= 1.0f && max_age <= 255.0f, "max_age {}: expected [1, 255] frames", max_age);
 }
 
-float innovation_tile(const InnovationInputs& in, const InnovationOptions& options,
-                      const Tile& tile, const InnovationOutputs& out) {
+void innovation_tile(const InnovationInputs& in, const InnovationOptions& options, const Tile& tile,
+                     const InnovationOutputs& out) {
   // A ring of row sums: each row of the window is summed once.
   std::array<Sums, kRows> ring{};
   const int height = in.residual.height();
-  int confirmed = 0, biased = 0;
   const auto slot = [](int y) { return static_cast<std::size_t>((y + kRows) % kRows); };
   for (int y = std::max(tile.y0 - kRadius, 0); y < std::min(tile.y0 + kRadius, height); ++y) {
     sum_row(in, tile, y, ring[slot(y)]);
@@ -99,14 +97,9 @@ float innovation_tile(const InnovationInputs& in, const InnovationOptions& optio
     }
     for (int x = tile.x0; x < tile.x1; ++x) {
       const auto i = static_cast<std::size_t>(x - tile.x0);
-      confirmed += in.confirmed(x, y) > 0.0f ? 1 : 0;
-      biased +=
-          finish_pixel(in, options, x, y, window.count[i], window.mean[i], window.square[i], out)
-              ? 1
-              : 0;
+      finish_pixel(in, options, x, y, window.count[i], window.mean[i], window.square[i], out);
     }
   }
-  return confirmed > 0 ? static_cast<float>(biased) / static_cast<float>(confirmed) : 0.0f;
 }
 
 }  // namespace eigenlight

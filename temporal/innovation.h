@@ -36,9 +36,7 @@ struct InnovationOutputs {
 /// Without bias, or with N = 1, that is n + s. New pixels start at age s. Unconfirmed pixels (no
 /// usable sample) keep their age. The variance of one frame is a running mean of v over min(n, 16)
 /// frames.
-///
-/// Returns the share of the confirmed pixels of the tile that have such a bias.
-float innovation_tile(const InnovationInputs& in, const InnovationOptions& options,
-                      const Tile& tile, const InnovationOutputs& out);
+void innovation_tile(const InnovationInputs& in, const InnovationOptions& options, const Tile& tile,
+                     const InnovationOutputs& out);
 
 }  // namespace eigenlight

@@ -7,25 +7,26 @@ namespace eigenlight {
 
 struct UpdateInputs {
   const CoefficientField& coefficients;
-  const Planes<3>& prediction;
-  const Planes<3>& light;        ///< u, resampling included; used where `samples` > 0
-  const Plane<float>& samples;   ///< this frame's samples over its regular number; 0: none usable
-  const Plane<float>& old_age;   ///< of the history; 0 where there is none
-  const Plane<float>& new_age;   ///< with this frame
-  std::span<const int> newborn;  ///< per tile: basis that starts from this frame's residual, or 0
+  const CoefficientField& learning;  ///< q of LightMemory
+  const Planes<3>& prediction;       ///< correction included
+  const Planes<3>& correction;
+  const Planes<3>& light;       ///< u, resampling included; used where `samples` > 0
+  const Plane<float>& samples;  ///< this frame's samples over its regular number; 0: none usable
+  const Plane<float>& old_age;  ///< of the history; 0 where there is none
+  const Plane<float>& new_age;  ///< with this frame
+  int active;                   ///< bases in use, [1, K]
+  int newborn;                  ///< basis that starts from the correction, or 0
 };
 
-/// One step of CCIPCA (Weng 2003; Chen 2012, Algorithm 1) with per-pixel weights w = samples / age
-/// (Chen 2012, section 3.4.2; no amnesia: the innovation test shortens ages where light changed).
-/// With r = u - prediction, the part of u that the bases do not explain:
-///   V_0 <- c_0 V_0 + w r                       the steady light, scaled to the present one
-///   V_k <- (1 - w) V_k + w c_k (c_k V_k + r)   k >= 1: Algorithm 1, line 8, where u_k, what the
-///   other
-///                                              bases leave over, is c_k V_k + r
-/// The scale of V_k is sqrt(eigenvalue) instead of Algorithm 1's eigenvalue, so that c_k is of
-/// order 1 and a new pixel can start at V_0 = u. A newborn basis starts as V_k = r (Algorithm 1,
-/// line 6). Pixels without usable samples keep c_0 V_0; those without history start at u, or stay 0
-/// without it.
+/// One step of incremental PCA with per-pixel weights (Chen 2012, Algorithm 1 and section 3.4.2),
+/// in the form of LightMemory. With c = (1, c_1, ...) after the rescaling by the gain c_0, r = u -
+/// prediction, s samples, n = new age - s, q = M^-1 c and h = c . q:
+///   V_0 <- c_0 V_0                                     the steady light, scaled to the present one
+///   V_k <- V_k + q_k (correction / h + r s / (n + h s))
+/// so that sum_k c_k V_k moves by the whole correction and by h s / (n + h s) of r. Of one basis
+/// that is the running mean. A newborn basis starts as the correction instead, with c_k = 1. A new
+/// pixel has n = 0 and starts at the V of least energy that explains u. Pixels without usable
+/// samples keep what they have; those without history either stay 0.
 ///
 /// Writes sum_k c_k V_k of the updated bases, this frame's temporal estimate, to `estimate`.
 void update_tile(const UpdateInputs& in, const Tile& tile, BasisField& bases, Planes<3>& estimate);

@@ -18,22 +18,35 @@ using Line = float[kSegment];
 // Plain loops over the pixels of a row: compiled once for each instruction set, they vectorize.
 struct Row {
   BasisRows bases;
-  alignas(64) Line coefficient[kMaxBases];
-  alignas(64) Line weight;    // w; 0 without usable sample
-  alignas(64) Line residual;  // of one channel; u itself at a new pixel
-  alignas(64) Line keep;      // 1 with history, else 0
+  alignas(64) Line coefficient[kMaxBases];  // c; c_0 is the gain
+  alignas(64) Line learning[kMaxBases];     // q
+  alignas(64) Line leverage;                // 1 / h
+  alignas(64) Line weight;                  // s / (n + h s); 0 without usable sample
+  alignas(64) Line keep;                    // 1 with history, else 0
+  alignas(64) Line step;                    // what q is multiplied with, of one channel
 };
 
-void LoadRow(const UpdateInputs& in, const Tile& segment, int bases, Row& row) {
+void LoadRow(const UpdateInputs& in, const Tile& segment, Row& row) {
   const int count = segment.x1 - segment.x0;
-  for (int k = 0; k < bases; ++k) in.coefficients.row(segment, k, row.coefficient[k]);
+  in.learning.row(segment, 0, row.learning[0]);
+  in.coefficients.row(segment, 0, row.coefficient[0]);
+  alignas(64) Line h;
+  for (int i = 0; i < count; ++i) h[i] = row.learning[0][i];
+  for (int k = 1; k < in.active; ++k) {
+    in.learning.row(segment, k, row.learning[k]);
+    in.coefficients.row(segment, k, row.coefficient[k]);
+    for (int i = 0; i < count; ++i) h[i] += row.coefficient[k][i] * row.learning[k][i];
+  }
   const float* samples = in.samples.at(segment.x0, segment.y0);
   const float* old_age = in.old_age.at(segment.x0, segment.y0);
   const float* new_age = in.new_age.at(segment.x0, segment.y0);
   for (int i = 0; i < count; ++i) {
+    // M is positive definite, so h >= 1 / M_00 = 1 at tile centers; interpolation may fall short.
+    const float leverage = h[i] > 1.0f ? h[i] : 1.0f;
     const bool usable = samples[i] > 0.0f, known = old_age[i] > 0.0f;
-    const float weight = known ? samples[i] / (new_age[i] > 0.0f ? new_age[i] : 1.0f) : 1.0f;
-    row.weight[i] = usable ? weight : 0.0f;
+    const float history = known && new_age[i] > samples[i] ? new_age[i] - samples[i] : 0.0f;
+    row.leverage[i] = 1.0f / leverage;
+    row.weight[i] = usable ? samples[i] / (history + leverage * samples[i]) : 0.0f;
     row.keep[i] = known ? 1.0f : 0.0f;
     row.bases.age[i] = usable || known ? new_age[i] : 0.0f;
   }
@@ -42,27 +55,29 @@ void LoadRow(const UpdateInputs& in, const Tile& segment, int bases, Row& row) {
 void UpdateChannel(const UpdateInputs& in, const Tile& segment, std::size_t channel, int bases,
                    Row& row, float* estimate) {
   const int count = segment.x1 - segment.x0;
-  const int born = in.newborn[static_cast<std::size_t>(segment.index)];
   const float* light = in.light[channel].at(segment.x0, segment.y0);
   const float* prediction = in.prediction[channel].at(segment.x0, segment.y0);
+  const float* correction = in.correction[channel].at(segment.x0, segment.y0);
   float(*values)[kSegment] = row.bases.values + static_cast<int>(channel) * bases;
+  const float shared = in.newborn == 0 ? 1.0f : 0.0f;
   for (int i = 0; i < count; ++i) {
     const float r = light[i] - prediction[i];
-    row.residual[i] = row.weight[i] > 0.0f ? r : 0.0f;
+    const float fresh = row.weight[i] > 0.0f ? row.weight[i] * r : 0.0f;
+    row.step[i] = shared * row.keep[i] * correction[i] * row.leverage[i] + fresh;
     values[0][i] =
-        row.coefficient[0][i] * values[0][i] * row.keep[i] + row.weight[i] * row.residual[i];
+        row.coefficient[0][i] * values[0][i] * row.keep[i] + row.learning[0][i] * row.step[i];
     estimate[i] = values[0][i];
   }
-  for (int k = 1; k < bases; ++k) {
-    const float* c = row.coefficient[k];
+  for (int k = 1; k < in.active; ++k) {
     for (int i = 0; i < count; ++i) {
-      const float w = row.weight[i] * row.keep[i];
-      const float old = values[k][i] * row.keep[i];
-      const float deflated = c[i] * old + row.residual[i];
-      const float next = (1.0f - w) * old + w * c[i] * deflated;
-      values[k][i] = k == born ? row.residual[i] * row.keep[i] : next;
-      estimate[i] += c[i] * (k == born ? old : next);
+      values[k][i] = row.keep[i] * values[k][i] + row.learning[k][i] * row.step[i];
+      estimate[i] += row.coefficient[k][i] * values[k][i];
     }
+  }
+  if (in.newborn == 0) return;
+  for (int i = 0; i < count; ++i) {
+    values[in.newborn][i] = row.keep[i] * correction[i];
+    estimate[i] += values[in.newborn][i];
   }
 }
 
@@ -71,7 +86,7 @@ void UpdateTile(const UpdateInputs& in, const Tile& tile, BasisField& bases, Pla
   for (int y = tile.y0; y < tile.y1; ++y) {
     const Tile segment{tile.x0, y, tile.x1, y + 1, tile.index};
     load_rows(bases, segment, row.bases);
-    LoadRow(in, segment, bases.bases(), row);
+    LoadRow(in, segment, row);
     for (std::size_t c = 0; c < 3; ++c) {
       UpdateChannel(in, segment, c, bases.bases(), row, estimate[c].at(tile.x0, y));
     }
