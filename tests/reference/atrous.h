@@ -84,7 +84,9 @@ inline double atrous_weight(const Frame& guides, const AtrousOptions& options,
 
 inline AtrousImage atrous_pass(const Frame& guides, const AtrousOptions& options,
                                const AtrousImage& image, int step) {
-  constexpr std::array<double, 5> kSpline{1 / 16.0, 1 / 4.0, 3 / 8.0, 1 / 4.0, 1 / 16.0};
+  const std::array<double, 5> kernel =
+      options.radius == 2 ? std::array{1 / 16.0, 1 / 4.0, 3 / 8.0, 1 / 4.0, 1 / 16.0}
+                          : std::array{0.0, 1 / 4.0, 1 / 2.0, 1 / 4.0, 0.0};
   AtrousImage out = image;
   for (int y = 0; y < image.extent.height; ++y) {
     for (int x = 0; x < image.extent.width; ++x) {
@@ -95,8 +97,8 @@ inline AtrousImage atrous_pass(const Frame& guides, const AtrousOptions& options
         for (int i = 0; i < 5; ++i) {
           const glm::ivec2 q(x + (i - 2) * step, y + (j - 2) * step);
           if (!image.extent.contains(q.x, q.y)) continue;
-          const double w = kSpline[static_cast<std::size_t>(i)] *
-                           kSpline[static_cast<std::size_t>(j)] *
+          const double w = kernel[static_cast<std::size_t>(i)] *
+                           kernel[static_cast<std::size_t>(j)] *
                            atrous_weight(guides, options, image, {x, y}, q);
           const std::size_t at = image.index(q.x, q.y);
           weights += w;

@@ -54,10 +54,15 @@ inline std::vector<std::vector<double>> inverse(std::vector<std::vector<double>>
   return a;
 }
 
-/// delta_k of one tile, shrunk. All bases must have energy and be independent.
-inline std::vector<double> coefficients(std::span<const TileSums> sums, const TileGrid& grid,
-                                        int index, const ShrinkOptions& options, int bases) {
-  const TileSums total = window(sums, grid, index);
+/// How far deltas are shrunk: `expected` are the K mean squares of the tile, or none.
+struct Shrinkage {
+  ShrinkOptions options;
+  std::span<const double> expected;
+};
+
+/// The K delta_k of one window. All bases must have energy and be independent.
+inline std::vector<double> coefficients(const TileSums& total, const Shrinkage& shrinkage,
+                                        int bases) {
   const auto n = static_cast<std::size_t>(bases);
   std::vector<std::vector<double>> gram(n, std::vector<double>(n));
   for (int i = 0; i < bases; ++i) {
@@ -75,7 +80,12 @@ inline std::vector<double> coefficients(std::span<const TileSums> sums, const Ti
       variance += inverted[k][i] * inverted[k][i] * total.spread[i];
     }
     if (delta[k] == 0.0) continue;
-    delta[k] *= std::max(0.0, 1.0 - options.noise * variance / (delta[k] * delta[k]));
+    double kept = std::max(0.0, 1.0 - shrinkage.options.noise * variance / (delta[k] * delta[k]));
+    if (!shrinkage.expected.empty()) {
+      kept = std::max(kept, shrinkage.expected[k] / (shrinkage.expected[k] + variance));
+    }
+    delta[k] *= kept;
+    if (k == 0) delta[k] = std::max(delta[k], -1.0);
   }
   return delta;
 }

@@ -1,6 +1,7 @@
 // Twin of temporal/update: one pixel, in double, line by line as in the header.
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 #include "temporal/update.h"
@@ -14,30 +15,40 @@ struct Updated {
   double age = 0.0;
 };
 
-inline Updated update(const UpdateInputs& in, const BasisField& old, glm::ivec2 p, int newborn) {
+inline Updated update(const UpdateInputs& in, const BasisField& old, glm::ivec2 p) {
   Updated out;
   const int x = p.x, y = p.y;
   const bool known = in.old_age(x, y) > 0.0f, usable = in.samples(x, y) > 0.0f;
+  const double s = in.samples(x, y);
+  const double n = known ? std::max(0.0, static_cast<double>(in.new_age(x, y)) - s) : 0.0;
   out.age = known || usable ? static_cast<double>(in.new_age(x, y)) : 0.0;
-  for (std::size_t c = 0; c < 3; ++c) {
-    const double u = in.light[c](x, y);
-    auto& v = out.basis[c];
-    if (!known) {
-      v[0] = usable ? u : 0.0;
-      out.estimate[c] = v[0];
-      continue;
+
+  std::array<double, kMaxBases> c{}, q{};
+  double h = 0.0;
+  for (int k = 0; k < in.active; ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    c[at] = k == 0 ? 1.0 : coefficient_at(in.coefficients, x, y, k);
+    q[at] = coefficient_at(in.learning, x, y, k);
+    h += c[at] * q[at];
+  }
+  h = std::max(h,
+               1.0);  // as it is for every c and q that belong together; between tiles they may not
+
+  for (std::size_t channel = 0; channel < 3; ++channel) {
+    const double r = usable ? in.light[channel](x, y) - in.prediction[channel](x, y) : 0.0;
+    const double correction = known ? static_cast<double>(in.correction[channel](x, y)) : 0.0;
+    const double learned =
+        (in.newborn == 0 ? correction / h : 0.0) + (usable ? r * s / (n + h * s) : 0.0);
+    for (int k = 0; k < in.active; ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      const double before = known ? old.value(x, y, static_cast<int>(channel), k) : 0.0;
+      const double scaled = k == 0 ? coefficient_at(in.coefficients, x, y, 0) * before : before;
+      out.basis[channel][at] = scaled + q[at] * learned;
+      out.estimate[channel] += c[at] * out.basis[channel][at];
     }
-    const double r = usable ? u - in.prediction[c](x, y) : 0.0;
-    const double w = usable ? in.samples(x, y) / out.age : 0.0;
-    for (int k = 0; k < old.bases(); ++k) {
-      const double coefficient = coefficient_at(in.coefficients, x, y, k);
-      const double before = old.value(x, y, static_cast<int>(c), k);
-      double& next = v[static_cast<std::size_t>(k)];
-      next = k == 0 ? coefficient * before + w * r
-                    : (1.0 - w) * before + w * coefficient * (coefficient * before + r);
-      // A newborn basis still counts with its old value in this frame's estimate.
-      out.estimate[c] += k == 0 ? next : coefficient * (k == newborn ? before : next);
-      if (k > 0 && k == newborn) next = r;
+    if (in.newborn > 0) {
+      out.basis[channel][static_cast<std::size_t>(in.newborn)] = correction;
+      out.estimate[channel] += correction;
     }
   }
   return out;

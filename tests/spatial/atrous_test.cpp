@@ -51,30 +51,52 @@ struct Scene {
   Plane<float> variance;
 };
 
+void expect_agreement(Extent extent, const AtrousOptions& options) {
+  const Scene before(extent);
+  reference::AtrousImage twin(before.color, before.variance);
+  for (int i = 0; i < options.passes; ++i) {
+    twin = reference::atrous_pass(before.guides, options, twin, 1 << i);
+  }
+  for_each_target([&] {
+    Scene after(extent);
+    after.run(options);
+    for (int y = 0; y < extent.height; ++y) {
+      for (int x = 0; x < extent.width; ++x) {
+        const std::size_t at = twin.index(x, y);
+        // A weight is a product of 16 powers of numbers near 1, three passes deep.
+        for (std::size_t c = 0; c < 3; ++c) {
+          ASSERT_NEAR(after.color[c](x, y), twin.values[c][at], 2e-5) << x << ", " << y;
+        }
+        ASSERT_NEAR(after.variance(x, y), twin.values[3][at], 2e-5 * twin.values[3][at] + 1e-7)
+            << x << ", " << y;
+      }
+    }
+  });
+}
+
 TEST(Atrous, AgreesWithTheTwinOnEveryTarget) {
   for (const Extent extent : kSweepExtents) {
-    AtrousOptions options;
-    const Scene before(extent);
-    reference::AtrousImage twin(before.color, before.variance);
-    for (int i = 0; i < options.passes; ++i) {
-      twin = reference::atrous_pass(before.guides, options, twin, 1 << i);
-    }
-    for_each_target([&] {
-      Scene after(extent);
-      after.run(options);
-      for (int y = 0; y < extent.height; ++y) {
-        for (int x = 0; x < extent.width; ++x) {
-          const std::size_t at = twin.index(x, y);
-          // A weight is a product of 16 powers of numbers near 1, three passes deep.
-          for (std::size_t c = 0; c < 3; ++c) {
-            ASSERT_NEAR(after.color[c](x, y), twin.values[c][at], 2e-5) << x << ", " << y;
-          }
-          ASSERT_NEAR(after.variance(x, y), twin.values[3][at], 2e-5 * twin.values[3][at] + 1e-7)
-              << x << ", " << y;
-        }
-      }
-    });
+    expect_agreement(extent, {.passes = 3});
+    expect_agreement(extent, {.passes = 3, .radius = 1});
   }
+}
+
+TEST(Atrous, FiltersTheTilesThatAreWantedAndCopiesTheOthers) {
+  const Extent extent{128, 32};  // 2 x 2 tiles of 64 x 16
+  Scene all(extent), some(extent);
+  const Scene before(extent);
+  Atrous atrous(extent, {.passes = 1});
+  const std::vector<std::uint8_t> wanted{0, 1, 0, 0};
+  atrous.process(some.guides, wanted, some.color, some.variance);
+  all.run({.passes = 1});
+  for (int y = 0; y < 32; ++y) {
+    for (int x = 0; x < 128; ++x) {
+      const bool filtered = x >= 64 && y < 16;
+      ASSERT_EQ(some.color[1](x, y), (filtered ? all : before).color[1](x, y)) << x << ", " << y;
+    }
+  }
+  EXPECT_THROW(atrous.process(some.guides, std::vector<std::uint8_t>(3), some.color, some.variance),
+               std::invalid_argument);
 }
 
 TEST(Atrous, FlatLightStaysFlat) {
@@ -236,6 +258,8 @@ TEST(Atrous, RefusesOtherExtentsAndBadOptions) {
                std::invalid_argument);
   EXPECT_THROW(Atrous({8, 8}, {.passes = 0}), std::invalid_argument);
   EXPECT_THROW(Atrous({8, 8}, {.passes = 7}), std::invalid_argument);
+  EXPECT_THROW(Atrous({8, 8}, {.radius = 0}), std::invalid_argument);
+  EXPECT_THROW(Atrous({8, 8}, {.radius = 3}), std::invalid_argument);
   EXPECT_THROW(Atrous({8, 8}, {.luminance_sigmas = 0.0f}), std::invalid_argument);
   EXPECT_THROW(Atrous({8, 8}, {.plane_distance = 1.5f}), std::invalid_argument);
   EXPECT_THROW(Atrous({0, 8}, {}), std::invalid_argument);
