@@ -1,0 +1,167 @@
+#include "temporal/correction.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/compare.h"
+#include "tests/support/extents.h"
+#include "tests/support/random_frames.h"
+
+namespace eigenlight {
+namespace {
+
+constexpr double kVariance = 0.3;
+
+// A wall of noise of variance kVariance around `mean`, predicted as 1 from a history of 16 frames.
+struct Scene {
+  explicit Scene(Extent extent)
+      : guides(make_random_frame({.extent = extent, .sky = false, .disturbed = false}, 2)),
+        light(make_planes<3>(extent)),
+        prediction(make_planes<3>(extent)),
+        confirmed(extent),
+        age(extent),
+        samples(extent),
+        variance(extent),
+        residual(extent) {
+    guides.camera = look_at({0, 0, 0}, {0, 0, 1}, {0, 1, 0}, 60.0f, extent);
+    guides.surface.id.fill(1);
+    guides.surface.depth.fill(4.0f);
+    for (std::size_t c = 0; c < 3; ++c) guides.surface.normal[c].fill(c == 2 ? -1.0f : 0.0f);
+    confirmed.fill(1.0f);
+    age.fill(16.0f);
+    samples.fill(1.0f);
+    variance.fill(static_cast<float>(kVariance));
+    set_light(1.0f);
+  }
+  void set_light(float mean, int first_column = 0) {
+    const auto half = static_cast<float>(std::sqrt(3.0 * kVariance));
+    for (int y = 0; y < light[0].height(); ++y) {
+      for (int x = 0; x < light[0].width(); ++x) {
+        const float noise = PixelRandom(5, x, y).between(-half, half);
+        for (std::size_t c = 0; c < 3; ++c) {
+          prediction[c](x, y) = 1.0f;
+          light[c](x, y) = (x < first_column ? 1.0f : mean) + noise;
+        }
+        residual(x, y) = light[0](x, y) - 1.0f;
+      }
+    }
+  }
+  double run() {
+    Correction correction(light[0].extent(), {});
+    return run(correction);
+  }
+  double run(Correction& correction) {
+    return correction.process({guides, light, confirmed, age, samples, variance}, prediction,
+                              residual);
+  }
+  Frame guides;
+  Planes<3> light, prediction;
+  Plane<float> confirmed, age, samples, variance, residual;
+};
+
+TEST(Correction, IsSilentUnderSteadyLight) {
+  Scene scene({191, 107});
+  Correction correction({191, 107}, {});
+  EXPECT_EQ(scene.run(correction), 0.0);
+  EXPECT_EQ(correction.skipped(), 191 * 107);
+  for (int y = 0; y < 107; ++y) {
+    for (int x = 0; x < 191; ++x) {
+      ASSERT_EQ(correction.correction()[0](x, y), 0.0f);
+      ASSERT_EQ(scene.prediction[0](x, y), 1.0f);
+    }
+  }
+}
+
+TEST(Correction, FollowsLightThatChangedAllOver) {
+  for (const float mean : {0.2f, 3.0f}) {
+    Scene scene({191, 107});
+    scene.set_light(mean);
+    EXPECT_GT(scene.run(), 0.9);
+    EXPECT_NEAR(scene.prediction[1](90, 50), mean, 0.1f * std::abs(mean - 1.0f) + 0.1f);
+  }
+}
+
+TEST(Correction, AddsUpAndTakesFromTheResidualWhatItGives) {
+  Scene scene({191, 107});
+  scene.set_light(2.0f, 100);
+  const Plane<float> before = scene.residual.clone();
+  Correction correction({191, 107}, {});
+  (void)scene.run(correction);
+  for (int y = 0; y < 107; ++y) {
+    for (int x = 0; x < 191; ++x) {
+      const float given = correction.correction()[1](x, y);
+      ASSERT_NEAR(scene.prediction[1](x, y), 1.0f + given, 1e-6f);
+      ASSERT_NEAR(scene.residual(x, y), before(x, y) - given, 1e-5f);
+    }
+  }
+}
+
+TEST(Correction, LeavesFarTilesAlone) {
+  const Extent extent{512, 64};
+  Scene scene(extent);
+  scene.set_light(2.0f, 400);
+  Correction correction(extent, {});
+  EXPECT_GT(scene.run(correction), 0.0);
+  // Gates look one coefficient tile around, are interpolated over another, and chance alone opens
+  // few: the first half stays as it was.
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 200; ++x) ASSERT_EQ(scene.prediction[0](x, y), 1.0f) << x << ", " << y;
+  }
+  EXPECT_GE(correction.skipped(), 192 * 64);
+}
+
+TEST(Correction, IsZeroAgainAfterLightHasSettled) {
+  Scene scene({65, 33});
+  Correction correction({65, 33}, {});
+  scene.set_light(3.0f);
+  EXPECT_GT(scene.run(correction), 0.5);
+  scene.set_light(1.0f);
+  EXPECT_EQ(scene.run(correction), 0.0);
+  for (int y = 0; y < 33; ++y) {
+    for (int x = 0; x < 65; ++x) ASSERT_EQ(correction.correction()[2](x, y), 0.0f);
+  }
+}
+
+TEST(Correction, UnconfirmedPixelsNeitherGiveNorTake) {
+  Scene scene({65, 33});
+  scene.set_light(3.0f);
+  scene.confirmed(30, 15) = 0.0f;
+  scene.samples(30, 15) = 0.0f;
+  scene.residual(30, 15) = 0.0f;
+  for (auto& plane : scene.light) plane(30, 15) = std::nanf("");
+  (void)scene.run();
+  EXPECT_EQ(scene.prediction[0](30, 15), 1.0f);
+  EXPECT_EQ(scene.residual(30, 15), 0.0f);
+  EXPECT_TRUE(std::isfinite(scene.prediction[0](31, 15)));
+  EXPECT_NEAR(scene.prediction[0](31, 15), 3.0f, 0.4f);
+}
+
+TEST(Correction, RunsAtAnySizeWithTheSameBitsForAnyNumberOfThreads) {
+  for (const Extent extent : kSweepExtents) {
+    Scene one(extent), three(extent);
+    one.set_light(2.0f);
+    three.set_light(2.0f);
+    set_thread_count(1);
+    const double share = one.run();
+    set_thread_count(3);
+    EXPECT_EQ(three.run(), share);
+    set_thread_count(0);
+    EXPECT_TRUE(planes_equal(one.prediction, three.prediction));
+    EXPECT_TRUE(planes_equal(one.residual, three.residual));
+  }
+}
+
+TEST(CorrectionOptions, RefusesWhatIsOutOfRange) {
+  const auto refused = [](const CorrectionOptions& options) {
+    EXPECT_THROW(Correction({8, 8}, options), std::invalid_argument);
+  };
+  refused({.significance = -1.0f});
+  refused({.significance = std::nanf("")});
+  refused({.passes = 0});
+  refused({.passes = 7});
+  refused({.radius = 3});
+}
+
+}  // namespace
+}  // namespace eigenlight
