@@ -4,6 +4,7 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "reproject/taps_simd.cpp"
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -55,32 +56,49 @@ struct Wanted {
   VI id;
 };
 
-MF TapValid(const PreviousSurface& previous, const TapOptions& options, const Wanted& wanted,
-            const Rays& rays, VI x, VI y) {
+// What the previous frame shows at a tap.
+struct Seen {
+  Vec3 normal;
+  VF depth;
+  VI id;
+};
+
+Seen GatherSeen(const GBuffer& surface, VI x, VI y) {
   const F d;
   const I di;
-  const auto& surface = previous.surface;
   const auto offset = [&](std::size_t stride) {
     return hn::Add(hn::Mul(y, hn::Set(di, static_cast<int>(stride))), x);
   };
   const VI at = offset(surface.depth.stride());
-  const VI id = hn::GatherIndex(di, reinterpret_cast<const std::int32_t*>(surface.id.row(0)),
-                                offset(surface.id.stride()));
-  const Vec3 normal{hn::GatherIndex(d, surface.normal[0].row(0), at),
-                    hn::GatherIndex(d, surface.normal[1].row(0), at),
-                    hn::GatherIndex(d, surface.normal[2].row(0), at)};
-  const VF depth = hn::GatherIndex(d, surface.depth.row(0), at);
+  return {{hn::GatherIndex(d, surface.normal[0].row(0), at),
+           hn::GatherIndex(d, surface.normal[1].row(0), at),
+           hn::GatherIndex(d, surface.normal[2].row(0), at)},
+          hn::GatherIndex(d, surface.depth.row(0), at),
+          hn::GatherIndex(di, reinterpret_cast<const std::int32_t*>(surface.id.row(0)),
+                          offset(surface.id.stride()))};
+}
 
+// The same where the taps of all lanes stand side by side from (x, y) on.
+Seen LoadSeen(const GBuffer& surface, int x, int y) {
+  const F d;
+  const auto load = [&](const Plane<float>& plane) { return hn::LoadU(d, plane.row(y) + x); };
+  return {{load(surface.normal[0]), load(surface.normal[1]), load(surface.normal[2])},
+          load(surface.depth),
+          hn::LoadU(I(), reinterpret_cast<const std::int32_t*>(surface.id.row(y)) + x)};
+}
+
+MF TapValid(const Seen& seen, float normal_cosine, const Wanted& wanted, const Rays& rays, VI x,
+            VI y) {
+  const F d;
   const VF half = hn::Set(d, 0.5f);
   const VF ray_x = rays.X(hn::Add(hn::ConvertTo(d, x), half));
   const VF ray_y = rays.Y(hn::Add(hn::ConvertTo(d, y), half));
   const VF along = hn::MulAdd(wanted.view_normal.x, ray_x,
                               hn::MulAdd(wanted.view_normal.y, ray_y, wanted.view_normal.z));
-  const VF distance = hn::Abs(hn::Sub(hn::Mul(depth, along), wanted.plane));
-  const MF same = hn::RebindMask(d, hn::Eq(id, wanted.id));
-  return hn::And(same,
-                 hn::And(hn::Le(distance, wanted.tolerance),
-                         hn::Ge(Dot(normal, wanted.normal), hn::Set(d, options.normal_cosine))));
+  const VF distance = hn::Abs(hn::Sub(hn::Mul(seen.depth, along), wanted.plane));
+  const MF same = hn::RebindMask(d, hn::Eq(seen.id, wanted.id));
+  return hn::And(same, hn::And(hn::Le(distance, wanted.tolerance),
+                               hn::Ge(Dot(seen.normal, wanted.normal), hn::Set(d, normal_cosine))));
 }
 
 // The pixel's own surface, and q = p + motion(p) in units of pixel centers.
@@ -124,6 +142,49 @@ Query LoadQuery(const Frame& current, const PreviousSurface& previous, const Tap
   return q;
 }
 
+// A tile's rows are a few lines each, too short for the hardware to foresee the next: asks for
+// those of the row below.
+void PrefetchRow(const Frame& current, const GBuffer& previous, const Tile& row) {
+  if (row.y1 == current.extent().height) return;
+  const auto lines = [&](const auto& plane) {
+    constexpr int kStep = static_cast<int>(Plane<float>::kLine / sizeof(float));
+    for (int x = row.x0; x < row.x1; x += kStep) hwy::Prefetch(plane.row(row.y1) + x);
+  };
+  for (const auto& plane : current.motion) lines(plane);
+  lines(current.previous_depth);
+  for (const GBuffer* surface : {&current.surface, &previous}) {
+    for (const auto& plane : surface->normal) lines(plane);
+    lines(surface->id);
+  }
+  lines(previous.depth);
+}
+
+// Where the upper left taps of all valid lanes stand side by side in one row, with all four taps of
+// each inside the image, the tap of the first lane. That is almost everywhere, and plain loads take
+// a fraction of the time of gathers.
+struct Run {
+  bool found = false;
+  int x = 0, y = 0;
+};
+
+Run FindRun(VI x0, VI y0, MF valid, Extent extent) {
+  const I di;
+  const int lanes = static_cast<int>(hn::Lanes(di));
+  const auto known = hn::RebindMask(di, valid);
+  const std::intptr_t lane = hn::FindFirstTrue(di, known);
+  if (lane < 0) return {};
+  const VI start = hn::Sub(x0, hn::Iota(di, 0));
+  alignas(64) std::int32_t x[HWY_MAX_BYTES / sizeof(std::int32_t)];
+  alignas(64) std::int32_t y[HWY_MAX_BYTES / sizeof(std::int32_t)];
+  hn::Store(start, di, x);
+  hn::Store(y0, di, y);
+  const Run run{true, x[lane], y[lane]};
+  const auto same = hn::And(hn::Eq(start, hn::Set(di, run.x)), hn::Eq(y0, hn::Set(di, run.y)));
+  const bool inside =
+      run.x >= 0 && run.x + lanes < extent.width && run.y >= 0 && run.y + 1 < extent.height;
+  return inside && hn::AllTrue(di, hn::Or(same, hn::Not(known))) ? run : Run{};
+}
+
 void ComputeTaps(const Frame& current, const PreviousSurface& previous, const TapOptions& options,
                  const Tile& row, TapSegment& taps) {
   const F d;
@@ -134,6 +195,7 @@ void ComputeTaps(const Frame& current, const PreviousSurface& previous, const Ta
   const VI zero = hn::Zero(di);
   const VF one = hn::Set(d, 1.0f);
   const int lanes = static_cast<int>(hn::Lanes(d));
+  PrefetchRow(current, previous.surface, row);
 
   for (int x = row.x0; x < row.x1; x += lanes) {
     const Query q = LoadQuery(current, previous, options, rays, x, row.y0);
@@ -141,28 +203,30 @@ void ComputeTaps(const Frame& current, const PreviousSurface& previous, const Ta
     const VF fx = hn::Sub(q.x, floor_x), fy = hn::Sub(q.y, floor_y);
     const VI x0 = hn::ConvertTo(di, floor_x), y0 = hn::ConvertTo(di, floor_y);
     const VF wx[2] = {hn::Sub(one, fx), fx}, wy[2] = {hn::Sub(one, fy), fy};
+    const Run run = FindRun(x0, y0, q.valid, extent);
 
     const auto at = static_cast<std::size_t>(x - row.x0);
-    VF sum = hn::Zero(d);
-    for (std::size_t t = 0; t < 4; ++t) {
-      const VI tx = hn::Add(x0, hn::Set(di, static_cast<int>(t & 1)));
-      const VI ty = hn::Add(y0, hn::Set(di, static_cast<int>(t >> 1)));
+    VF weight[4], sum = hn::Zero(d);
+    for (int t = 0; t < 4; ++t) {
+      const int right = t & 1, down = t >> 1;
+      const VI tx = hn::Add(x0, hn::Set(di, right)), ty = hn::Add(y0, hn::Set(di, down));
       const VI cx = hn::Min(hn::Max(tx, zero), last_x), cy = hn::Min(hn::Max(ty, zero), last_y);
       const MF inside = hn::RebindMask(d, hn::And(hn::Eq(tx, cx), hn::Eq(ty, cy)));
-      const MF valid =
-          hn::And(hn::And(q.valid, inside), TapValid(previous, options, q.wanted, rays, cx, cy));
-      const VF weight = hn::IfThenElseZero(valid, hn::Mul(wx[t & 1], wy[t >> 1]));
-      sum = hn::Add(sum, weight);
-      hn::Store(weight, d, taps.weight[t].data() + at);
-      hn::Store(cx, di, taps.x[t].data() + at);
-      hn::Store(cy, di, taps.y[t].data() + at);
+      const Seen seen = run.found ? LoadSeen(previous.surface, run.x + right, run.y + down)
+                                  : GatherSeen(previous.surface, cx, cy);
+      const MF valid = hn::And(hn::And(q.valid, inside),
+                               TapValid(seen, options.normal_cosine, q.wanted, rays, cx, cy));
+      weight[t] = hn::IfThenElseZero(valid, hn::Mul(wx[right], wy[down]));
+      sum = hn::Add(sum, weight[t]);
+      hn::Store(cx, di, taps.x[static_cast<std::size_t>(t)].data() + at);
+      hn::Store(cy, di, taps.y[static_cast<std::size_t>(t)].data() + at);
     }
     // A sum below 1 % is one far corner that happened to pass: nothing to trust.
     const MF enough = hn::Ge(sum, hn::Set(d, 0.01f));
     const VF scale = hn::IfThenElseZero(enough, hn::Div(one, sum));
-    for (std::size_t t = 0; t < 4; ++t) {
-      float* weight = taps.weight[t].data() + at;
-      hn::Store(hn::IfThenElseZero(enough, hn::Mul(hn::Load(d, weight), scale)), d, weight);
+    for (int t = 0; t < 4; ++t) {
+      hn::Store(hn::IfThenElseZero(enough, hn::Mul(weight[t], scale)), d,
+                taps.weight[static_cast<std::size_t>(t)].data() + at);
     }
   }
 }

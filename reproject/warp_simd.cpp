@@ -2,6 +2,7 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "reproject/warp_simd.cpp"
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -14,16 +15,26 @@ namespace hn = hwy::HWY_NAMESPACE;
 // A pixel is a whole number of groups of four floats, so up to four lanes always fit.
 void WarpBases(const BasisField& from, const TapSegment& taps, const Tile& row, BasisField& to) {
   const hn::CappedTag<float, 4> d;
+  constexpr int kLine = static_cast<int>(Plane<float>::kLine / sizeof(float));
   const int lanes = static_cast<int>(hn::Lanes(d));
   const int floats = from.pixel_floats();
   const std::size_t stride = from.data().stride();
   const float* base = from.data().row(0);
   float* out = to.pixel(row.x0, row.y0);
+  // Rows of a tile are too short for the hardware to foresee the next one: asks for those that the
+  // row below will read and write.
+  const int last = from.extent().height - 1;
+  const std::size_t below = row.y0 < last ? stride : 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(row.x1 - row.x0); ++i, out += floats) {
     const auto pixel = [&](std::size_t t) {
       return base + stride * static_cast<std::size_t>(taps.y[t][i]) + taps.x[t][i] * floats;
     };
     const float* const p[4] = {pixel(0), pixel(1), pixel(2), pixel(3)};
+    const float* next = p[2] + (taps.y[2][i] < last ? stride : 0);
+    for (int j = 0; j < floats; j += kLine) {
+      hwy::Prefetch(next + j);
+      hwy::Prefetch(out + below + j);
+    }
     const auto w0 = hn::Set(d, taps.weight[0][i]), w1 = hn::Set(d, taps.weight[1][i]);
     const auto w2 = hn::Set(d, taps.weight[2][i]), w3 = hn::Set(d, taps.weight[3][i]);
     for (int j = 0; j < floats; j += lanes) {
