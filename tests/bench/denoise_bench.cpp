@@ -68,8 +68,8 @@ struct Stages {
         history(extent, setting.bases),
         warped(extent, setting.bases),
         coefficients(extent, setting.bases),
+        learning(extent, setting.bases),
         sums(static_cast<std::size_t>(tiles.count())),
-        newborn(sums.size(), 0),
         extra(extent),
         light(make_planes<3>(extent)),
         prediction(make_planes<3>(extent)),
@@ -133,14 +133,13 @@ struct Stages {
   }
   void test_innovation() {
     for_each_tile(tiles, [&](const Tile& tile) {
-      const float biased = innovation_tile({residual, confirmed, age, samples}, {}, tile,
-                                           {new_age, warped_variance});
-      benchmark::DoNotOptimize(biased);
+      innovation_tile({residual, confirmed, age, samples}, {}, tile, {new_age, warped_variance});
     });
   }
   void update() {
     for_each_tile(tiles, [&](const Tile& tile) {
-      update_tile({coefficients, prediction, correction, light, samples, age, new_age, newborn},
+      update_tile({coefficients, learning, prediction, correction, light, samples, age, new_age,
+                   history.bases(), 0},
                   tile, warped, estimate);
     });
   }
@@ -150,9 +149,8 @@ struct Stages {
   Extent extent;
   TileGrid tiles;
   BasisField history, warped;
-  CoefficientField coefficients;
+  CoefficientField coefficients, learning;
   std::vector<TileSums> sums;
-  std::vector<int> newborn;
   Plane<std::uint8_t> extra;
   Planes<3> light, prediction, correction, estimate;
   Plane<float> variance, warped_variance, samples, residual, confirmed, age, new_age;
