@@ -55,7 +55,8 @@ Atrous::Atrous(Extent extent, const AtrousOptions& options)
       grid_(stage_tiles(extent)),
       scratch_color_(make_planes<3>(extent)),
       scratch_variance_(extent),
-      skipped_(static_cast<std::size_t>(grid_.count())) {
+      surface_(static_cast<std::size_t>(grid_.count())),
+      skipped_(surface_.size()) {
   options.validate();
 }
 
@@ -90,9 +91,10 @@ std::int64_t Atrous::process(const Frame& guides, float quiet, Planes<3>& color,
     run_pass(
         guides, pass,
         [&](const Tile& tile) {
-          const std::int64_t surface = surface_pixels(guides, tile);
-          if (surface > 0 && !is_quiet(color, variance, quiet, tile)) return true;
-          if (pass == 0) skipped_[static_cast<std::size_t>(tile.index)] = surface;
+          const auto index = static_cast<std::size_t>(tile.index);
+          if (pass == 0) surface_[index] = surface_pixels(guides, tile);
+          if (surface_[index] > 0 && !is_quiet(color, variance, quiet, tile)) return true;
+          if (pass == 0) skipped_[index] = surface_[index];
           return false;
         },
         color, variance);

@@ -54,7 +54,7 @@ class Atrous {
   TileGrid grid_;
   Planes<3> scratch_color_;
   Plane<float> scratch_variance_;
-  std::vector<std::int64_t> skipped_;  // per tile
+  std::vector<std::int64_t> surface_, skipped_;  // pixels per tile
 };
 
 }  // namespace eigenlight

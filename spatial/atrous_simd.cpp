@@ -173,21 +173,21 @@ void AddRow(const AtrousPass& pass, const TapRow& row, int x, int dy, int y, Cen
   }
 }
 
-// Writes the first `count` lanes.
-void StoreCenter(const AtrousPass& pass, const Center& at, int x, int y, int count) {
+// Writes the lanes whose pixels show a surface; the others keep their value. Lanes beyond the row
+// write its padding.
+void StoreCenter(const AtrousPass& pass, const Center& at, int x, int y) {
   const F d;
-  alignas(64) float color[3][64], variance[64];
+  const hn::RebindToUnsigned<F> du;
+  const auto id = hn::LoadU(du, pass.guides.surface.id.row(y) + x);
+  const auto surface = hn::RebindMask(d, hn::Ne(id, hn::Zero(du)));
   const VF scale = hn::Div(hn::Set(d, 1.0f), at.weight);
-  for (int c = 0; c < 3; ++c) hn::Store(hn::Mul(at.sum[c], scale), d, color[c]);
-  hn::Store(hn::Mul(at.variance, hn::Mul(scale, scale)), d, variance);
-  const std::uint32_t* id = pass.guides.surface.id.at(x, y);
-  for (int i = 0; i < count; ++i) {
-    const bool surface = id[i] != 0;
-    for (std::size_t c = 0; c < 3; ++c) {
-      pass.out_color[c](x + i, y) = surface ? color[c][i] : pass.color[c](x + i, y);
-    }
-    pass.out_variance(x + i, y) = surface ? variance[i] : pass.variance(x + i, y);
+  const auto store = [&](VF value, const Plane<float>& from, Plane<float>& to) {
+    hn::StoreU(hn::IfThenElse(surface, value, hn::LoadU(d, from.row(y) + x)), d, to.row(y) + x);
+  };
+  for (std::size_t c = 0; c < 3; ++c) {
+    store(hn::Mul(at.sum[c], scale), pass.color[c], pass.out_color[c]);
   }
+  store(hn::Mul(at.variance, hn::Mul(scale, scale)), pass.variance, pass.out_variance);
 }
 
 void AtrousTile(const AtrousPass& pass, const Tile& tile) {
@@ -210,7 +210,7 @@ void AtrousTile(const AtrousPass& pass, const Tile& tile) {
           AddEdgeRow(pass, row, x, dy, ty, at);
         }
       }
-      StoreCenter(pass, at, x, y, std::min(lanes, tile.x1 - x));
+      StoreCenter(pass, at, x, y);
     }
   }
 }

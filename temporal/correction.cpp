@@ -6,14 +6,14 @@
 namespace eigenlight {
 namespace {
 
-// The gate opens from 8 % significant blocks, over another 12 %: chance makes 5 % of them, a sun
-// that sweeps through the atrium more than half.
-constexpr double kGateStart = 0.08, kGateRange = 0.12;
-constexpr int kBlock = 8;
-// Squared standard deviations of a block's mean that count as chance, 5 % of normal noise; and the
-// pixels that a block must have to be asked at all.
-constexpr double kBlockChance = 4.0;
-constexpr int kBlockPixels = 16;
+// Squared standard deviations of a block's mean that count as chance: 0.3 % of normal noise, some 2
+// % of path-traced noise with its heavy tail; and the pixels a block must have to be asked at all.
+constexpr double kBlockChance = 9.0;
+constexpr int kBlock = 8, kBlockPixels = 16;
+
+// The gate opens from 3 % significant blocks, over another 4 %: more than chance makes under a
+// steady light. A sun that sweeps through the atrium makes a third.
+constexpr double kGateStart = 0.03, kGateRange = 0.04;
 
 float luminance(const Planes<3>& color, int x, int y) {
   return 0.2126f * color[0](x, y) + 0.7152f * color[1](x, y) + 0.0722f * color[2](x, y);

@@ -64,7 +64,9 @@ const Planes<3>* EigenDenoiser::step(FrameSource& source) {
   start_frame(clock.lap());
   warp_history();
   report_[Stage::kReproject] = clock.lap();
-  resample(source);
+  const std::int64_t planned = plan_samples();
+  report_[Stage::kBudget] = clock.lap();
+  resample(source, planned);
   report_[Stage::kResample] = clock.lap();
   project();
   report_[Stage::kProject] = clock.lap();
@@ -139,15 +141,19 @@ void EigenDenoiser::warp_tile(const Tile& tile) {
   }
 }
 
-void EigenDenoiser::resample(FrameSource& source) {
+// Samples that the budget grants to young pixels.
+std::int64_t EigenDenoiser::plan_samples() {
   for_each_tile(tiles_, [&](const Tile& tile) {
     for (int y = tile.y0; y < tile.y1; ++y) {
       for (int x = tile.x0; x < tile.x1; ++x) old_age_(x, y) = bases_.age(x, y);
     }
   });
-  const BudgetStats stats = budget_.process(frame_, old_age_, extra_);
-  const bool resampled = stats.samples > 0 && source.resample(extra_, frame_, extra_mean_);
-  if (resampled) report_.extra_samples = stats.samples;
+  return budget_.process(frame_, old_age_, extra_).samples;
+}
+
+void EigenDenoiser::resample(FrameSource& source, std::int64_t planned) {
+  const bool resampled = planned > 0 && source.resample(extra_, frame_, extra_mean_);
+  if (resampled) report_.extra_samples = planned;
   for_each_tile(tiles_, [&](const Tile& tile) { merge_samples(tile, resampled); });
   for (const TileCount& count : counts_) {
     report_.surface_pixels += count.surface;

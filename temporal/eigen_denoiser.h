@@ -23,7 +23,7 @@ struct EigenOptions {
   InnovationOptions innovation;
   BudgetOptions budget;
   GuidedOptions guided;
-  AtrousOptions atrous{.passes = 4, .luminance_sigmas = 5.0f};
+  AtrousOptions atrous{.passes = 5, .radius = 1, .luminance_sigmas = 5.0f};
   /// [0, 255] frames: younger pixels take the guided filter's value the more, the younger they are.
   float young = 4.0f;
   /// [0, 1] of the squared luminance: a tile whose variances all lie below it is not filtered.
@@ -57,7 +57,8 @@ class EigenDenoiser final : public Denoiser {
   [[nodiscard]] bool is_empty(const Tile& tile) const;
   void warp_history();
   void warp_tile(const Tile& tile);
-  void resample(FrameSource& source);
+  [[nodiscard]] std::int64_t plan_samples();
+  void resample(FrameSource& source, std::int64_t planned);
   void merge_samples(const Tile& tile, bool resampled);
   void project();
   void retire_bases();
