@@ -1,8 +1,9 @@
 // CPU time of the denoiser's stages, each beside a copy of the bytes that it has to move.
 //
 // No renderer: frames of an analytic room are replayed from memory. Arguments: height (16:9), bases
-// K, threads. tests/bench/table.py turns the JSON output into a table. Bytes a pixel, with P the
-// bytes of its bases and age (BasisField), 4 for a float or an id:
+// K, threads (CPU time of single stages does not depend on them). tests/bench/table.py turns the
+// JSON output into a table. Bytes a pixel, with P the bytes of its bases and age (BasisField), 4
+// for a float or an id:
 //
 //   stage        reads                                                        writes
 //   reproject    motion 2, depth 1, normal 3, id 1; before: depth 1,          P, variance 1
@@ -322,19 +323,25 @@ void denoiser(benchmark::State& state) {
   });
 }
 
-void of_all_bases(benchmark::internal::Benchmark* bench) {
+const std::vector<std::int64_t> kHeights{360, 720}, kBases{1, 3, 5, 8};
+
+void with_arguments(benchmark::internal::Benchmark* bench,
+                    const std::vector<std::vector<std::int64_t>>& arguments) {
   bench->ArgNames({"height", "bases", "threads"})
-      ->ArgsProduct({{360, 720}, {1, 3, 5, 8}, {1, 2}})
+      ->ArgsProduct(arguments)
       ->UseManualTime()
       ->Unit(benchmark::kMillisecond);
 }
 
 // Stages that never see a basis.
 void of_one_basis(benchmark::internal::Benchmark* bench) {
-  bench->ArgNames({"height", "bases", "threads"})
-      ->ArgsProduct({{360, 720}, {1}, {1, 2}})
-      ->UseManualTime()
-      ->Unit(benchmark::kMillisecond);
+  with_arguments(bench, {kHeights, {1}, {1}});
+}
+void of_all_bases(benchmark::internal::Benchmark* bench) {
+  with_arguments(bench, {kHeights, kBases, {1}});
+}
+void of_all_threads(benchmark::internal::Benchmark* bench) {
+  with_arguments(bench, {kHeights, kBases, {1, 2}});
 }
 
 BENCHMARK(reproject)->Apply(of_all_bases);
@@ -345,8 +352,8 @@ BENCHMARK(update)->Apply(of_all_bases);
 BENCHMARK(budget)->Apply(of_one_basis);
 BENCHMARK(atrous)->Apply(of_one_basis);
 BENCHMARK(guided)->Apply(of_one_basis);
-BENCHMARK(temporal)->Apply(of_all_bases);
-BENCHMARK(denoiser)->Apply(of_all_bases);
+BENCHMARK(temporal)->Apply(of_all_threads);
+BENCHMARK(denoiser)->Apply(of_all_threads);
 
 }  // namespace
 }  // namespace eigenlight
