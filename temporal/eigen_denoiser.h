@@ -25,7 +25,7 @@ struct EigenOptions {
   GuidedOptions guided;
   AtrousOptions atrous{.passes = 5, .radius = 1, .luminance_sigmas = 5.0f};
   /// [0, 255] frames: younger pixels take the guided filter's value the more, the younger they are.
-  float young = 4.0f;
+  float young = 2.0f;
   /// [0, 1] of the squared luminance: a tile whose variances all lie below it is not filtered.
   float quiet = 1e-5f;
   /// [0, 1] of the pixels that must need correction before another basis is born.
