@@ -79,6 +79,7 @@ void ShrinkOptions::validate() const {
 CoefficientField::CoefficientField(Extent extent, int bases)
     : grid_(extent, kCoefficientTile, kCoefficientTile),
       bases_(bases),
+      used_(bases),
       values_(static_cast<std::size_t>(grid_.count() * bases), 0.0f) {}
 
 void CoefficientField::row(const Tile& row, int k, float* out) const {

@@ -28,6 +28,9 @@ class CoefficientField {
 
   [[nodiscard]] const TileGrid& grid() const { return grid_; }
   [[nodiscard]] int bases() const { return bases_; }
+  /// Coefficients k >= used() are 0 in all tiles.
+  [[nodiscard]] int used() const { return used_; }
+  void set_used(int used) { used_ = used; }
   [[nodiscard]] std::span<float> tile(int index) {
     return {values_.data() + static_cast<std::size_t>(index * bases_),
             static_cast<std::size_t>(bases_)};
@@ -42,7 +45,7 @@ class CoefficientField {
 
  private:
   TileGrid grid_;
-  int bases_;
+  int bases_, used_;
   std::vector<float> values_;
 };
 

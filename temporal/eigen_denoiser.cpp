@@ -73,8 +73,8 @@ const Planes<3>* EigenDenoiser::step(FrameSource& source) {
   update();
   report_[Stage::kUpdate] = clock.lap();
   filter();
-  report_[Stage::kFilter] = clock.lap();
   keep_history();
+  report_[Stage::kFilter] = clock.lap();
   report_.rays = frame_.rays;
   report_.non_finite_samples = frame_.non_finite_samples;
   return &output_;
@@ -109,12 +109,13 @@ void EigenDenoiser::warp_history() {
     memory_.reset();
   }
   const bool moving = !report_.cut && !still;
+  const int active = memory_.active();
   for_each_tile(tiles_, [&](const Tile& tile) {
     if (moving) warp_tile(tile);
     if (report_.cut || is_empty(tile)) return;
     accumulate_tile(
-        {moving ? warped_bases_ : bases_, frame_, moving ? warped_variance_ : variance_}, tile,
-        sums_[static_cast<std::size_t>(tile.index)]);
+        {moving ? warped_bases_ : bases_, frame_, moving ? warped_variance_ : variance_, active},
+        tile, sums_[static_cast<std::size_t>(tile.index)]);
   });
   if (moving) {
     std::swap(bases_, warped_bases_);
@@ -190,6 +191,7 @@ void EigenDenoiser::merge_samples(const Tile& tile, bool resampled) {
 
 void EigenDenoiser::project() {
   solve_coefficients(sums_, memory_.expected(), options_.shrink, coefficients_);
+  coefficients_.set_used(memory_.active());
   for_each_tile(tiles_, [&](const Tile& tile) {
     predict_tile(bases_, coefficients_, light_, tile,
                  {prediction_, residual_, confirmed_, old_age_});

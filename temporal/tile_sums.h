@@ -32,6 +32,7 @@ struct SumInputs {
   const BasisField& bases;       ///< warped, not yet updated (leave one out)
   const Frame& frame;            ///< raw indirect light u
   const Plane<float>& variance;  ///< of one frame's luminance, from earlier frames only
+  int active = kMaxBases;        ///< bases that may hold energy; sums of the others stay 0
 };
 
 /// Adds the pixels of `tile` (at most kSegment wide) to `sums`. A pixel counts with

@@ -71,12 +71,12 @@ const float (*Shift(const float (*rows)[kSegment], int i))[kSegment] {
   return reinterpret_cast<const float(*)[kSegment]>(rows[0] + i);
 }
 
-void AddRow(const Row& row, int bases, TileSums& sums) {
+void AddRow(const Row& row, int bases, int active, TileSums& sums) {
   const F d;
   const int lanes = static_cast<int>(hn::Lanes(d));
   const auto total = [&](VF v) { return static_cast<double>(hn::GetLane(hn::SumOfLanes(d, v))); };
   const float(*values)[kSegment] = row.bases.values;
-  for (int j = 0; j < bases; ++j) {
+  for (int j = 0; j < active; ++j) {
     for (int k = 0; k <= j; ++k) {
       VF sum = hn::Zero(d);
       for (int i = 0; i < row.vectors * lanes; i += lanes) {
@@ -105,7 +105,7 @@ void AccumulateTile(const SumInputs& in, const Tile& tile, TileSums& sums) {
     const auto used = std::count_if(row.weight, row.weight + count, [](float m) { return m > 0; });
     if (used == 0) continue;
     sums.pixels += static_cast<double>(used);
-    AddRow(row, in.bases.bases(), sums);
+    AddRow(row, in.bases.bases(), std::min(in.active, in.bases.bases()), sums);
   }
 }
 
