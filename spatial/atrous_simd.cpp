@@ -40,10 +40,10 @@ void SmoothVariance(const Plane<float>& variance, int x0, int count, int y, floa
   const float* middle = variance.row(y);
   const float* lower = variance.row(std::min(y + 1, variance.height() - 1));
   float column[kAtrousWidth + 2];
-  for (int i = 0; i < count + 2; ++i) {
-    const int x = std::clamp(x0 + i - 1, 0, variance.width() - 1);
-    column[i] = upper[x] + 2.0f * middle[x] + lower[x];
-  }
+  const auto sum = [&](int x) { return upper[x] + 2.0f * middle[x] + lower[x]; };
+  column[0] = sum(std::max(x0 - 1, 0));
+  for (int i = 0; i < count; ++i) column[i + 1] = sum(x0 + i);
+  column[count + 1] = sum(std::min(x0 + count, variance.width() - 1));
   for (int i = 0; i < count; ++i) {
     out[i] = (column[i] + 2.0f * column[i + 1] + column[i + 2]) * (1.0f / 16.0f);
   }
@@ -143,11 +143,12 @@ HWY_INLINE void AddTap(const TapRow& row, VF x, VF y, VF kernel, Load load, Cent
 
 // A tap row for the pixels x .. x + lanes, of which some taps lie outside the image: kernel 0
 // there.
+template <int kRadius>
 void AddEdgeRow(const AtrousPass& pass, const TapRow& row, int x, int dy, int y, Center& at) {
   const F d;
   const int lanes = static_cast<int>(hn::Lanes(d)), last = pass.variance.width() - 1;
   alignas(64) float values[64];
-  for (int j = -pass.options.radius; j <= pass.options.radius; ++j) {
+  for (int j = -kRadius; j <= kRadius; ++j) {
     if (j == 0 && dy == 0) continue;
     const int first = x + j * pass.step;
     const auto load = [&](const float* source) {
@@ -162,9 +163,11 @@ void AddEdgeRow(const AtrousPass& pass, const TapRow& row, int x, int dy, int y,
   }
 }
 
-void AddRow(const AtrousPass& pass, const TapRow& row, int x, int dy, int y, Center& at) {
+template <int kRadius>
+HWY_INLINE void AddRow(const AtrousPass& pass, const TapRow& row, int x, int dy, int y,
+                       Center& at) {
   const F d;
-  for (int j = -pass.options.radius; j <= pass.options.radius; ++j) {
+  for (int j = -kRadius; j <= kRadius; ++j) {
     if (j == 0 && dy == 0) continue;
     const int first = x + j * pass.step;
     const auto load = [&](const float* source) { return hn::LoadU(d, source + first); };
@@ -190,9 +193,10 @@ void StoreCenter(const AtrousPass& pass, const Center& at, int x, int y) {
   store(hn::Mul(at.variance, hn::Mul(scale, scale)), pass.variance, pass.out_variance);
 }
 
-void AtrousTile(const AtrousPass& pass, const Tile& tile) {
+template <int kRadius>
+void FilterTile(const AtrousPass& pass, const Tile& tile) {
   const F d;
-  const int lanes = static_cast<int>(hn::Lanes(d)), reach = pass.options.radius * pass.step;
+  const int lanes = static_cast<int>(hn::Lanes(d)), reach = kRadius * pass.step;
   const Extent extent = pass.variance.extent();
   alignas(64) Line smooth_variance = {};
   for (int y = tile.y0; y < tile.y1; ++y) {
@@ -200,18 +204,26 @@ void AtrousTile(const AtrousPass& pass, const Tile& tile) {
     for (int x = tile.x0; x < tile.x1; x += lanes) {
       Center at = LoadCenter(pass, x, y, hn::Load(d, smooth_variance + (x - tile.x0)));
       const bool inside = x - reach >= 0 && x + lanes + reach <= extent.width;
-      for (int dy = -pass.options.radius; dy <= pass.options.radius; ++dy) {
+      for (int dy = -kRadius; dy <= kRadius; ++dy) {
         const int ty = y + dy * pass.step;
         if (ty < 0 || ty >= extent.height) continue;
         const TapRow row(pass, ty);
         if (inside) {
-          AddRow(pass, row, x, dy, ty, at);
+          AddRow<kRadius>(pass, row, x, dy, ty, at);
         } else {
-          AddEdgeRow(pass, row, x, dy, ty, at);
+          AddEdgeRow<kRadius>(pass, row, x, dy, ty, at);
         }
       }
       StoreCenter(pass, at, x, y);
     }
+  }
+}
+
+void AtrousTile(const AtrousPass& pass, const Tile& tile) {
+  if (pass.options.radius == 1) {
+    FilterTile<1>(pass, tile);
+  } else {
+    FilterTile<2>(pass, tile);
   }
 }
 

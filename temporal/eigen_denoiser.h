@@ -23,7 +23,7 @@ struct EigenOptions {
   InnovationOptions innovation;
   BudgetOptions budget;
   GuidedOptions guided;
-  AtrousOptions atrous{.passes = 5, .radius = 1, .luminance_sigmas = 5.0f};
+  AtrousOptions atrous{.passes = 4, .radius = 1, .luminance_sigmas = 5.0f};
   /// [0, 255] frames: younger pixels take the guided filter's value the more, the younger they are.
   float young = 2.0f;
   /// [0, 1] of the squared luminance: a tile whose variances all lie below it is not filtered.
