@@ -11,9 +11,9 @@ namespace {
 constexpr double kBlockChance = 9.0;
 constexpr int kBlock = 8, kBlockPixels = 16;
 
-// The gate opens from 1.5 % significant blocks, over another 2 %: about what chance makes under a
-// steady light, where the correction does no harm. A sun that sweeps through the atrium makes a third.
-constexpr double kGateStart = 0.015, kGateRange = 0.02;
+// The gate opens from 3 % significant blocks, over another 4 %: more than chance makes under a steady
+// light, where the correction would only cost time. A sun that sweeps through the atrium makes a third.
+constexpr double kGateStart = 0.03, kGateRange = 0.04;
 
 float luminance(const Planes<3>& color, int x, int y) {
   return 0.2126f * color[0](x, y) + 0.7152f * color[1](x, y) + 0.0722f * color[2](x, y);

@@ -85,6 +85,7 @@ void InnovationTile(const InnovationInputs& in, const InnovationOptions& options
   // A ring of row sums: each row of the window is summed once.
   std::array<Sums, kRows> ring{};
   const int height = in.residual.height();
+  const auto width = static_cast<std::size_t>(tile.x1 - tile.x0);
   const auto slot = [](int y) { return static_cast<std::size_t>((y + kRows) % kRows); };
   for (int y = std::max(tile.y0 - kRadius, 0); y < std::min(tile.y0 + kRadius, height); ++y) {
     SumRow(in, tile, y, ring[slot(y)]);
@@ -97,7 +98,7 @@ void InnovationTile(const InnovationInputs& in, const InnovationOptions& options
     }
     Sums window;
     for (const Sums& row : ring) {
-      for (std::size_t i = 0; i < kSegment; ++i) {
+      for (std::size_t i = 0; i < width; ++i) {
         window.count[i] += row.count[i];
         window.mean[i] += row.mean[i];
         window.square[i] += row.square[i];
