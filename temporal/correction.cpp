@@ -11,8 +11,9 @@ namespace {
 constexpr double kBlockChance = 9.0;
 constexpr int kBlock = 8, kBlockPixels = 16;
 
-// The gate opens from 3 % significant blocks, over another 4 %: more than chance makes under a steady
-// light, where the correction would only cost time. A sun that sweeps through the atrium makes a third.
+// The gate opens from 3 % significant blocks, over another 4 %: more than chance makes under a
+// steady light, where the correction would only cost time. A sun that sweeps through the atrium
+// makes a third.
 constexpr double kGateStart = 0.03, kGateRange = 0.04;
 
 float luminance(const Planes<3>& color, int x, int y) {
