@@ -10,6 +10,12 @@
 #include "temporal/update.h"
 
 namespace eigenlight {
+namespace {
+
+// Changes when the saved bytes do.
+constexpr int kStateVersion = 2;
+
+}  // namespace
 
 void EigenOptions::validate() const {
   taps.validate();
@@ -28,6 +34,7 @@ EigenDenoiser::EigenDenoiser(const DenoiserOptions& options, const EigenOptions&
     : options_(parts),
       extent_(options.extent),
       tiles_(extent_, kCoefficientTile, kCoefficientTile),
+      surfaces_(extent_),
       bases_(extent_, options.bases),
       warped_bases_(extent_, options.bases),
       variance_(extent_),
@@ -55,7 +62,6 @@ EigenDenoiser::EigenDenoiser(const DenoiserOptions& options, const EigenOptions&
       new_age_(extent_),
       output_variance_(extent_) {
   parts.validate();
-  history_surface_.resize(extent_);
 }
 
 const Planes<3>* EigenDenoiser::step(FrameSource& source) {
@@ -73,7 +79,7 @@ const Planes<3>* EigenDenoiser::step(FrameSource& source) {
   update();
   report_[Stage::kUpdate] = clock.lap();
   filter();
-  keep_history();
+  surfaces_.keep(frame_);
   report_[Stage::kFilter] = clock.lap();
   report_.rays = frame_.rays;
   report_.non_finite_samples = frame_.non_finite_samples;
@@ -85,7 +91,7 @@ void EigenDenoiser::start_frame(const StageTime& time) {
            frame_.extent().width, frame_.extent().height, extent_.width, extent_.height);
   report_ = {};
   report_.frame = frame_.index;
-  report_.cut = !has_history_ || history_index_ != frame_.previous_index;
+  report_.cut = !surfaces_.is_followed_by(frame_);
   report_[Stage::kSource] = time;
   for_each_tile(tiles_, [&](const Tile& tile) {
     std::int64_t surface = 0;
@@ -133,7 +139,7 @@ void EigenDenoiser::warp_tile(const Tile& tile) {
     return;
   }
   TapSegment taps;
-  const PreviousSurface previous{history_camera_, history_surface_};
+  const PreviousSurface previous = surfaces_.previous();
   for (int y = tile.y0; y < tile.y1; ++y) {
     const Tile row{tile.x0, y, tile.x1, y + 1, tile.index};
     compute_taps(frame_, previous, options_.taps, row, taps);
@@ -316,30 +322,9 @@ void EigenDenoiser::fill_young() {
   });
 }
 
-void EigenDenoiser::keep_history() {
-  has_history_ = true;
-  history_index_ = frame_.index;
-  history_camera_ = frame_.camera;
-  for_each_tile(tiles_, [&](const Tile& tile) {
-    const auto copy = [&](const auto& from, auto& to) {
-      for (int y = tile.y0; y < tile.y1; ++y) {
-        std::copy(from.at(tile.x0, y), from.row(y) + tile.x1, to.at(tile.x0, y));
-      }
-    };
-    copy(frame_.surface.depth, history_surface_.depth);
-    copy(frame_.surface.id, history_surface_.id);
-    for (std::size_t c = 0; c < 3; ++c) copy(frame_.surface.normal[c], history_surface_.normal[c]);
-  });
-}
-
 void EigenDenoiser::save(StateWriter& out) const {
-  out.value("eigenlight", 1);
-  out.value("has_history", has_history_);
-  out.value("index", history_index_);
-  out.value("camera", history_camera_);
-  out.plane("depth", history_surface_.depth);
-  out.planes("normal", history_surface_.normal);
-  out.plane("id", history_surface_.id);
+  out.value("eigenlight", kStateVersion);
+  surfaces_.save(out);
   out.value("bases", bases_.bases());
   out.plane("basis values", bases_.data());
   out.plane("variance", variance_);
@@ -354,13 +339,8 @@ void EigenDenoiser::load(StateReader& in) {
   };
   int version = 0, bases = 0;
   in.value("eigenlight", version);
-  expect("version", version, 1);
-  in.value("has_history", has_history_);
-  in.value("index", history_index_);
-  in.value("camera", history_camera_);
-  in.plane("depth", history_surface_.depth);
-  in.planes("normal", history_surface_.normal);
-  in.plane("id", history_surface_.id);
+  expect("version", version, kStateVersion);
+  surfaces_.load(in);
   in.value("bases", bases);
   expect("bases", bases, bases_.bases());
   in.plane("basis values", bases_.data());

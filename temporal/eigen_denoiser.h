@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "reproject/basis_field.h"
-#include "reproject/taps.h"
+#include "reproject/surface_history.h"
 #include "spatial/atrous.h"
 #include "spatial/guided_filter.h"
 #include "spatial/sample_budget.h"
@@ -48,7 +48,7 @@ class EigenDenoiser final : public Denoiser {
   [[nodiscard]] const Frame& frame() const override { return frame_; }
   [[nodiscard]] const FrameReport& report() const override { return report_; }
   [[nodiscard]] const Plane<float>& age() const override { return new_age_; }
-  void reset() override { has_history_ = false; }
+  void reset() override { surfaces_.reset(); }
   void save(StateWriter& out) const override;
   void load(StateReader& in) override;
 
@@ -68,7 +68,6 @@ class EigenDenoiser final : public Denoiser {
   void fill_young();
   void prepare_filter(const Tile& tile);
   void fresh_variance(const Tile& tile);
-  void keep_history();
 
   struct TileCount {
     std::int64_t surface = 0, fresh = 0, non_finite = 0;
@@ -81,10 +80,7 @@ class EigenDenoiser final : public Denoiser {
   FrameReport report_;
 
   // History: of the frame before, once warped of this one.
-  bool has_history_ = false;
-  int history_index_ = 0;
-  Camera history_camera_;
-  GBuffer history_surface_;
+  SurfaceHistory surfaces_;
   BasisField bases_, warped_bases_;
   Plane<float> variance_, warped_variance_;  // of one frame's luminance
   LightMemory memory_;

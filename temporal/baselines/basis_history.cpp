@@ -7,19 +7,17 @@
 namespace eigenlight {
 
 BasisHistory::BasisHistory(Extent extent, int bases)
-    : bases_(extent, bases), warped_(extent, bases) {
-  surface_.resize(extent);
-}
+    : surfaces_(extent), bases_(extent, bases), warped_(extent, bases) {}
 
 BasisHistory::Warp BasisHistory::warp(const Frame& frame) {
   EL_CHECK(frame.extent() == extent(), "frame {} is {}x{}, expected {}x{}", frame.index,
            frame.extent().width, frame.extent().height, extent().width, extent().height);
-  if (!known_ || index_ != frame.previous_index) {
+  if (!surfaces_.is_followed_by(frame)) {
     bases_.data().fill(0.0f);
     return {.cut = true};
   }
   if (frame.is_static) return {.skipped = static_cast<std::int64_t>(extent().pixels())};
-  const PreviousSurface previous{camera_, surface_};
+  const PreviousSurface previous = surfaces_.previous();
   for_each_tile(stage_tiles(extent()), [&](const Tile& tile) {
     TapSegment taps;
     for (int y = tile.y0; y < tile.y1; ++y) {
@@ -32,34 +30,15 @@ BasisHistory::Warp BasisHistory::warp(const Frame& frame) {
   return {};
 }
 
-void BasisHistory::keep(const Frame& frame) {
-  known_ = true;
-  index_ = frame.index;
-  camera_ = frame.camera;
-  surface_.depth.copy_from(frame.surface.depth);
-  copy_planes(frame.surface.normal, surface_.normal);
-  surface_.id.copy_from(frame.surface.id);
-}
-
 void BasisHistory::save(StateWriter& out) const {
-  out.value("known", known_);
-  out.value("index", index_);
-  out.value("camera", camera_);
-  out.plane("depth", surface_.depth);
-  out.planes("normal", surface_.normal);
-  out.plane("id", surface_.id);
+  surfaces_.save(out);
   out.value("bases", bases_.bases());
   out.plane("basis values", bases_.data());
 }
 
 void BasisHistory::load(StateReader& in) {
   const Extent wanted = extent();
-  in.value("known", known_);
-  in.value("index", index_);
-  in.value("camera", camera_);
-  in.plane("depth", surface_.depth);
-  in.planes("normal", surface_.normal);
-  in.plane("id", surface_.id);
+  surfaces_.load(in);
   int bases = 0;
   in.value("bases", bases);
   if (bases != bases_.bases()) {

@@ -5,7 +5,7 @@
 
 #include "frame/state.h"
 #include "reproject/basis_field.h"
-#include "reproject/taps.h"
+#include "reproject/surface_history.h"
 
 namespace eigenlight {
 
@@ -25,8 +25,8 @@ class BasisHistory {
   /// differs.
   [[nodiscard]] Warp warp(const Frame& frame);
   /// Takes what the next warp() has to know of `frame`. The bases are to be updated by then.
-  void keep(const Frame& frame);
-  void reset() { known_ = false; }  ///< the next warp() is a cut
+  void keep(const Frame& frame) { surfaces_.keep(frame); }
+  void reset() { surfaces_.reset(); }  ///< the next warp() is a cut
 
   [[nodiscard]] Extent extent() const { return bases_.extent(); }
   [[nodiscard]] BasisField& bases() { return bases_; }
@@ -38,10 +38,7 @@ class BasisHistory {
 
  private:
   TapOptions taps_;
-  bool known_ = false;
-  int index_ = 0;
-  Camera camera_;
-  GBuffer surface_;  // depth, normal and id
+  SurfaceHistory surfaces_;
   BasisField bases_, warped_;
 };
 

@@ -1,0 +1,37 @@
+// The surfaces of the frame before, which every history needs to follow them.
+#pragma once
+
+#include "frame/state.h"
+#include "reproject/taps.h"
+
+namespace eigenlight {
+
+/// Number, camera and surfaces of the frame kept last.
+class SurfaceHistory {
+ public:
+  /// Throws std::invalid_argument on a bad size.
+  explicit SurfaceHistory(Extent extent) { surface_.resize(extent); }
+
+  /// Whether `frame` leads back to the frame kept last; otherwise it is a cut.
+  [[nodiscard]] bool is_followed_by(const Frame& frame) const {
+    return known_ && index_ == frame.previous_index;
+  }
+  [[nodiscard]] PreviousSurface previous() const { return {camera_, surface_}; }
+
+  /// `frame` has the size of the history.
+  void keep(const Frame& frame);
+  void reset() { known_ = false; }  ///< whatever comes next is a cut
+
+  /// load() throws std::runtime_error on data that is not such a state. Sizes are for the owner to
+  /// check, who has planes of its own.
+  void save(StateWriter& out) const;
+  void load(StateReader& in);
+
+ private:
+  bool known_ = false;
+  int index_ = 0;
+  Camera camera_;
+  GBuffer surface_;  // depth, normal and id
+};
+
+}  // namespace eigenlight
