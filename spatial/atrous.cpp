@@ -2,14 +2,11 @@
 
 #include <numeric>
 
+#include "frame/luminance.h"
 #include "spatial/atrous_kernel.h"
 
 namespace eigenlight {
 namespace {
-
-float luminance(const Planes<3>& color, int x, int y) {
-  return 0.2126f * color[0](x, y) + 0.7152f * color[1](x, y) + 0.0722f * color[2](x, y);
-}
 
 bool is_quiet(const Planes<3>& color, const Plane<float>& variance, float quiet, const Tile& tile) {
   for (int y = tile.y0; y < tile.y1; ++y) {

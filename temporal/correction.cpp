@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "frame/luminance.h"
+
 namespace eigenlight {
 namespace {
 
@@ -15,10 +17,6 @@ constexpr int kBlock = 8, kBlockPixels = 16;
 // steady light, where the correction would only cost time. A sun that sweeps through the atrium
 // makes a third.
 constexpr double kGateStart = 0.03, kGateRange = 0.04;
-
-float luminance(const Planes<3>& color, int x, int y) {
-  return 0.2126f * color[0](x, y) + 0.7152f * color[1](x, y) + 0.0722f * color[2](x, y);
-}
 
 }  // namespace
 
