@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -71,6 +73,14 @@ class Denoiser {
 struct DenoiserOptions {
   Extent extent;
   int bases = 3;  ///< [1, 8] K, for methods that have bases
+  /// Parts of the method to turn off, by name, to see what each is worth.
+  std::vector<std::string> without = {};
+};
+
+/// A part of a method that can be turned off.
+struct Part {
+  std::string_view name;
+  std::string_view what;  ///< one line: what happens without it
 };
 
 /// A method as a user names it.
@@ -79,13 +89,14 @@ struct Method {
   std::string_view what;   ///< one line
   std::string_view paper;  ///< authors and year, or empty
   std::unique_ptr<Denoiser> (*make)(const DenoiserOptions&);
+  std::span<const Part> parts = {};
 };
 
 /// All methods, in the order they are listed. `reference` is not among them: it is a way to render.
 [[nodiscard]] const std::vector<Method>& methods();
 
-/// Throws std::invalid_argument listing the known methods if `name` is none, or naming a bad
-/// option.
+/// Throws std::invalid_argument listing the known methods if `name` is none, listing its parts if
+/// it has none of a name in `without`, or naming a bad option.
 [[nodiscard]] std::unique_ptr<Denoiser> make_denoiser(std::string_view name,
                                                       const DenoiserOptions& options);
 

@@ -1,11 +1,12 @@
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "temporal/baselines/chen2012.h"
 #include "temporal/baselines/running_mean.h"
 #include "temporal/denoiser.h"
 #include "temporal/eigen_denoiser.h"
-#include "temporal/pass_through.h"
+#include "temporal/frame_by_frame.h"
 
 namespace eigenlight {
 namespace {
@@ -13,6 +14,27 @@ namespace {
 template <typename Kind>
 std::unique_ptr<Denoiser> make(const DenoiserOptions& options) {
   return std::make_unique<Kind>(options);
+}
+
+std::unique_ptr<Denoiser> by_frame(const DenoiserOptions& options, std::string_view name,
+                                   std::unique_ptr<SpatialFilter> filter) {
+  return std::make_unique<FrameByFrame>(options, name, std::move(filter));
+}
+
+template <typename List>
+std::string names(const List& list) {
+  std::string text;
+  for (const auto& entry : list) text += fmt::format("{}{}", text.empty() ? "" : ", ", entry.name);
+  return text.empty() ? "none" : text;
+}
+
+void check_parts(const Method& method, const std::vector<std::string>& without) {
+  for (const std::string& name : without) {
+    const bool known = std::any_of(method.parts.begin(), method.parts.end(),
+                                   [&](const Part& part) { return part.name == name; });
+    EL_CHECK(known, "method '{}' has no part '{}' to turn off; it has: {}", method.name, name,
+             names(method.parts));
+  }
 }
 
 }  // namespace
@@ -25,7 +47,8 @@ const std::vector<Method>& methods() {
       {"chen2012", "incremental PCA of whole images, basis filtering, 120 samples at new pixels",
        "Chen, Lei and Chang 2012", make<Chen2012>},
       {"mean", "reprojected running mean of up to 32 frames", "", make<RunningMean>},
-      {"noisy", "the frames as they are rendered", "", make<PassThrough>},
+      {"noisy", "the frames as they are rendered", "",
+       [](const DenoiserOptions& options) { return by_frame(options, "noisy", nullptr); }},
   };
   return kMethods;
 }
@@ -35,12 +58,8 @@ std::unique_ptr<Denoiser> make_denoiser(std::string_view name, const DenoiserOpt
   EL_CHECK(options.bases >= 1 && options.bases <= 8, "bases {}: expected 1 to 8", options.bases);
   const auto method = std::find_if(methods().begin(), methods().end(),
                                    [&](const Method& m) { return m.name == name; });
-  if (method == methods().end()) {
-    std::string known;
-    for (const Method& m : methods())
-      known += fmt::format("{}{}", known.empty() ? "" : ", ", m.name);
-    throw std::invalid_argument(fmt::format("unknown method '{}'; known: {}", name, known));
-  }
+  EL_CHECK(method != methods().end(), "unknown method '{}'; known: {}", name, names(methods()));
+  check_parts(*method, options.without);
   return method->make(options);
 }
 

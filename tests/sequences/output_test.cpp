@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "temporal/pass_through.h"
+#include "temporal/frame_by_frame.h"
 #include "tests/support/analytic_source.h"
 #include "tests/support/temp_dir.h"
 

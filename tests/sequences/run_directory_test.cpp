@@ -7,7 +7,7 @@
 
 #include "sequences/atomic_file.h"
 #include "sequences/checkpoint.h"
-#include "temporal/pass_through.h"
+#include "temporal/frame_by_frame.h"
 #include "tests/support/temp_dir.h"
 
 namespace eigenlight {
@@ -34,7 +34,7 @@ class RunDirectoryTest : public testing::Test {
   }
 
   TempDir dir_;
-  PassThrough denoiser_{{{8, 8}, 3}};
+  FrameByFrame denoiser_{{{8, 8}, 3}, "noisy"};
 };
 
 TEST_F(RunDirectoryTest, ResumesWhereItWasSaved) {

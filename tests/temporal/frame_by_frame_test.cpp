@@ -1,4 +1,4 @@
-#include "temporal/pass_through.h"
+#include "temporal/frame_by_frame.h"
 
 #include <gtest/gtest.h>
 
@@ -10,11 +10,11 @@
 namespace eigenlight {
 namespace {
 
-TEST(PassThrough, HandsTheRawFrameThrough) {
+TEST(FrameByFrame, HandsTheRawFrameThrough) {
   AnalyticOptions options;
   options.sky_columns = 10;
   AnalyticSource source(options);
-  PassThrough noisy({options.extent, 3});
+  FrameByFrame noisy({options.extent, 3}, "noisy");
   for (int frame = 0; frame < options.frames; ++frame) {
     const Planes<3>* out = noisy.step(source);
     ASSERT_NE(out, nullptr);
@@ -32,7 +32,7 @@ TEST(PassThrough, HandsTheRawFrameThrough) {
   EXPECT_EQ(noisy.step(source), nullptr);
 }
 
-TEST(PassThrough, ExcludesAndCountsPixelsThatAreNotFinite) {
+TEST(FrameByFrame, ExcludesAndCountsPixelsThatAreNotFinite) {
   AnalyticOptions options;
   options.edit = [](Frame& frame) {
     frame.indirect[0](3, 4) = std::numeric_limits<float>::quiet_NaN();
@@ -40,7 +40,7 @@ TEST(PassThrough, ExcludesAndCountsPixelsThatAreNotFinite) {
     frame.non_finite_samples = 7;
   };
   AnalyticSource source(options);
-  PassThrough noisy({options.extent, 3});
+  FrameByFrame noisy({options.extent, 3}, "noisy");
   const Planes<3>* out = noisy.step(source);
   ASSERT_NE(out, nullptr);
   EXPECT_EQ(noisy.report().non_finite_pixels, 2);
@@ -52,9 +52,9 @@ TEST(PassThrough, ExcludesAndCountsPixelsThatAreNotFinite) {
   }
 }
 
-TEST(PassThrough, RefusesFramesOfAnotherSizeAndStatesOfAnotherMethod) {
+TEST(FrameByFrame, RefusesFramesOfAnotherSizeAndStatesOfAnotherMethod) {
   AnalyticSource source({});
-  PassThrough noisy({{63, 36}, 3});
+  FrameByFrame noisy({{63, 36}, 3}, "noisy");
   EXPECT_THROW((void)noisy.step(source), std::invalid_argument);
   StateWriter other;
   other.value("mean", 1u);

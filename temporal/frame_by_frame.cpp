@@ -1,0 +1,90 @@
+#include "temporal/frame_by_frame.h"
+
+#include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "frame/tiles.h"
+#include "temporal/stage_clock.h"
+
+namespace eigenlight {
+namespace {
+
+// Changes when the saved bytes do.
+constexpr std::uint32_t kStateVersion = 1;
+
+struct Counts {
+  std::int64_t surface = 0, non_finite = 0;
+};
+
+}  // namespace
+
+FrameByFrame::FrameByFrame(const DenoiserOptions& options, std::string_view name,
+                           std::unique_ptr<SpatialFilter> filter)
+    : name_(name),
+      filter_(std::move(filter)),
+      signal_(make_planes<3>(options.extent)),
+      weight_(options.extent),
+      age_(options.extent) {
+  if (filter_) filtered_ = make_planes<3>(options.extent);
+}
+
+const Planes<3>* FrameByFrame::step(FrameSource& source) {
+  StageClock clock;
+  if (!source.next(frame_)) return nullptr;
+  report_ = {};
+  report_[Stage::kSource] = clock.lap();
+  const Extent extent = age_.extent();
+  EL_CHECK(frame_.extent() == extent, "frame {} is {}x{}, expected {}x{}", frame_.index,
+           frame_.extent().width, frame_.extent().height, extent.width, extent.height);
+  take_signal();
+  if (filter_) filter_->process({frame_, signal_, weight_}, filtered_);
+  report_[Stage::kFilter] = clock.lap();
+  report_.frame = frame_.index;
+  report_.cut = true;
+  report_.new_pixels = report_.surface_pixels;
+  report_.rays = frame_.rays;
+  report_.non_finite_samples = frame_.non_finite_samples;
+  return filter_ ? &filtered_ : &signal_;
+}
+
+void FrameByFrame::take_signal() {
+  const TileGrid grid = stage_tiles(age_.extent());
+  std::vector<Counts> counts(static_cast<std::size_t>(grid.count()));
+  for_each_tile(grid, [&](const Tile& tile) {
+    Counts& count = counts[static_cast<std::size_t>(tile.index)];
+    for (int y = tile.y0; y < tile.y1; ++y) {
+      for (int x = tile.x0; x < tile.x1; ++x) {
+        const bool surface = frame_.surface.id(x, y) != 0;
+        bool finite = true;
+        for (const auto& plane : frame_.indirect) finite = finite && std::isfinite(plane(x, y));
+        const bool used = surface && finite;
+        for (std::size_t c = 0; c < 3; ++c) {
+          signal_[c](x, y) = used ? frame_.indirect[c](x, y) : 0.0f;
+        }
+        weight_(x, y) = used ? 1.0f : 0.0f;
+        age_(x, y) = surface ? 1.0f : 0.0f;
+        count.surface += surface ? 1 : 0;
+        count.non_finite += surface && !finite ? 1 : 0;
+      }
+    }
+  });
+  for (const Counts& count : counts) {
+    report_.surface_pixels += count.surface;
+    report_.non_finite_pixels += count.non_finite;
+  }
+}
+
+void FrameByFrame::save(StateWriter& out) const { out.value(name_, kStateVersion); }
+
+void FrameByFrame::load(StateReader& in) {
+  std::uint32_t version = 0;
+  in.value(name_, version);
+  if (version != kStateVersion) {
+    throw std::runtime_error(
+        fmt::format("state of '{}': version {}, expected {}", name_, version, kStateVersion));
+  }
+}
+
+}  // namespace eigenlight
