@@ -2,6 +2,9 @@
 #include <string>
 #include <utility>
 
+#include "spatial/atrous_filter.h"
+#include "spatial/cross_bilateral.h"
+#include "spatial/guided_spatial.h"
 #include "temporal/baselines/chen2012.h"
 #include "temporal/baselines/running_mean.h"
 #include "temporal/denoiser.h"
@@ -19,6 +22,12 @@ std::unique_ptr<Denoiser> make(const DenoiserOptions& options) {
 std::unique_ptr<Denoiser> by_frame(const DenoiserOptions& options, std::string_view name,
                                    std::unique_ptr<SpatialFilter> filter) {
   return std::make_unique<FrameByFrame>(options, name, std::move(filter));
+}
+
+template <typename Filter, typename Options>
+std::unique_ptr<Denoiser> through(const DenoiserOptions& options, std::string_view name,
+                                  const Options& chosen) {
+  return by_frame(options, name, std::make_unique<Filter>(options.extent, chosen));
 }
 
 template <typename List>
@@ -47,6 +56,20 @@ const std::vector<Method>& methods() {
       {"chen2012", "incremental PCA of whole images, basis filtering, 120 samples at new pixels",
        "Chen, Lei and Chang 2012", make<Chen2012>},
       {"mean", "reprojected running mean of up to 32 frames", "", make<RunningMean>},
+      {"guided", "each frame through the guided filter: normals and depth", "Bauszat et al. 2011",
+       [](const DenoiserOptions& options) {
+         return through<GuidedSpatial>(options, "guided", GuidedOptions{});
+       }},
+      {"atrous", "each frame through edge-avoiding wavelets: color, normals, positions",
+       "Dammertz et al. 2010",
+       [](const DenoiserOptions& options) {
+         return through<AtrousFilter>(options, "atrous", AtrousFilterOptions{});
+       }},
+      {"cross-bilateral", "each frame through a cross bilateral filter: normals, depth, albedo",
+       "Eisemann and Durand 2004; Petschnigg et al. 2004",
+       [](const DenoiserOptions& options) {
+         return through<CrossBilateral>(options, "cross-bilateral", CrossBilateralOptions{});
+       }},
       {"noisy", "the frames as they are rendered", "",
        [](const DenoiserOptions& options) { return by_frame(options, "noisy", nullptr); }},
   };
