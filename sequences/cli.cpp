@@ -33,7 +33,9 @@ void add_picture_options(CLI::App& command, RenderSettings& settings) {
   command.add_option("--bounces", settings.bounces, "Bounces of indirect light")
       ->capture_default_str();
   command.add_option("--seed", settings.seed, "Other seeds, other noise")->capture_default_str();
-  command.add_option("--perturb", settings.perturb, "What moves: none, lights, objects, all")
+  command
+      .add_option("--perturb", settings.perturb,
+                  "What changes: none, lights, objects, all, step[:FRAME] (light, once)")
       ->capture_default_str();
   command.add_flag("--environment", settings.environment,
                    "Environment map of a scene.json in place of its suns and sky");

@@ -106,12 +106,31 @@ FramePaths paths_of(int frame, const std::vector<Sequence>& sequences) {
   return paths;
 }
 
+[[noreturn]] void fail_without_step(int step) {
+  throw std::runtime_error(
+      fmt::format("step {0}: expected mean light of the reference to change by {1:.0f} % or more "
+                  "between frames {2} and {0}, both measured",
+                  step, 100.0 * kLeastStep, step - 1));
+}
+
+std::vector<LightLevel> light_levels(const std::vector<FrameFigures>& frames) {
+  std::vector<LightLevel> levels;
+  for (const FrameFigures& frame : frames) {
+    const Figures& figures = frame[PixelSet::kSurface];
+    if (figures.pixels == 0) continue;
+    levels.push_back({frame.frame, figures[Metric::kLight].value(),
+                      figures[Metric::kReferenceLight].value(), figures[Metric::kRelmse].value()});
+  }
+  return levels;
+}
+
 // Reads and measures frame after frame.
 class Evaluator {
  public:
   explicit Evaluator(const EvaluateOptions& options)
       : options_(options), metrics_(options.metrics) {
     result_.metrics = options.metrics;
+    result_.step = options.step;
   }
 
   void measure(int frame, const FramePaths& paths) {
@@ -120,6 +139,7 @@ class Evaluator {
       if (!options_.skips_bad) throw std::runtime_error(loaded.bad);
       result_.bad_pixels += loaded.bad_pixels;
     }
+    if (!result_.step && result_.frames.empty()) result_.step = loaded.step;
     loaded.images.follows = follows_;
     result_.frames.push_back(metrics_.add(std::move(loaded.images)));
     result_.surface_from = loaded.surface_from;
@@ -136,6 +156,8 @@ class Evaluator {
           fmt::format("no frame could be measured; {}", result_.skipped.front().reason));
     }
     result_.mean = mean_figures(result_.frames);
+    if (result_.step) result_.lag = measure_lag(light_levels(result_.frames), *result_.step);
+    if (options_.step && !result_.lag) fail_without_step(*options_.step);
     return std::move(result_);
   }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "sequences/lag.h"
 #include "sequences/metrics.h"
 
 namespace eigenlight {
@@ -18,8 +19,11 @@ struct EvaluateOptions {
   std::string layer = "indirect";         ///< of the references
   std::optional<std::string> test_layer;  ///< of the test; the same as `layer` if absent
   std::string frames;                     ///< frame_range.h; empty: all that any sequence has
-  bool skips_bad = false;                 ///< leave bad frames and pixels out, and count them
-  MetricOptions metrics;                  ///< is_display is set by the file names
+  /// First frame of a light step; absent: as the file of the first frame has it
+  /// (`eigenlight.perturb`), in the test, else in the reference.
+  std::optional<int> step;
+  bool skips_bad = false;  ///< leave bad frames and pixels out, and count them
+  MetricOptions metrics;   ///< is_display is set by the file names
 };
 
 /// Something that was left out on request.
@@ -34,6 +38,8 @@ struct Evaluation {
   std::vector<Skipped> skipped;  ///< frames
   std::int64_t bad_pixels = 0;   ///< with NaN or Inf, left out of frames that were measured
   MetricOptions metrics;         ///< as used
+  std::optional<int> step;       ///< first frame of a light step, as given or as found
+  std::optional<Lag> lag;        ///< over `frames`; absent if there is no step to be seen in them
   std::string surface_from;      ///< where the pixel sets come from: `test id`, or `all pixels`
   std::string age_from;          ///< `test age`, or empty: no young and old pixels
 };
@@ -45,8 +51,9 @@ struct Evaluation {
 ///
 /// Bad: a missing or unreadable file, a missing layer, images of different size, pixels with NaN or
 /// Inf. Throws std::runtime_error with one line that names the file of the first bad frame and
-/// counts the others that are missing, unless skips_bad; also if no frame is left. Throws
-/// std::invalid_argument on options that do not fit together.
+/// counts the others that are missing, unless skips_bad; also if no frame is left, or if no light
+/// step is seen where options.step says. Throws std::invalid_argument on options that do not fit
+/// together.
 [[nodiscard]] Evaluation evaluate(const EvaluateOptions& options);
 
 }  // namespace eigenlight

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -36,6 +37,26 @@ Json to_json(const FrameFigures& frame) {
   return json;
 }
 
+void add_lag(const Lag& lag, Json& json) {
+  if (!lag.frames) return;
+  json["lag_frames"] = *lag.frames;
+  json["lag_error"] = *lag.error;
+}
+
+std::string lag_lines(const Evaluation& evaluation) {
+  if (!evaluation.lag) return {};
+  const Lag& lag = *evaluation.lag;
+  if (lag.frames) {
+    return fmt::format(
+        "lag: {} frames after the light step at {} to 90 % of it, relmse {:.6g} summed\n",
+        *lag.frames, *evaluation.step, *lag.error);
+  }
+  double most = 0.0;
+  for (const auto& [frame, reached] : lag.reached) most = std::max(most, reached);
+  return fmt::format("lag: not 90 % of the light step at {}, {:.1f} % at most\n", *evaluation.step,
+                     100.0 * most);
+}
+
 std::string cell(const std::optional<double>& value) {
   return fmt::format("{:>14}", value ? fmt::format("{:.6g}", *value) : "-");
 }
@@ -44,6 +65,7 @@ struct CommandOptions {
   EvaluateOptions evaluate;
   std::string test_layer;
   double reference_noise = 0.0;
+  int step = 0;
   bool prints_json = false;
   std::string directory;
 };
@@ -66,6 +88,8 @@ void add_inputs(CLI::App& command, CommandOptions& options) {
                      "Layer of the test, if it has another name");
   command.add_option("--frames", options.evaluate.frames,
                      "Such as 40-59 or 1-10,20; without it all that are there");
+  command.add_option("--step", options.step,
+                     "Frame of a light step: also measure lag [what render wrote to the files]");
 }
 
 void add_outputs(CLI::App& command, CommandOptions& options) {
@@ -87,6 +111,7 @@ void run(const CLI::App& command, const CommandOptions& given, std::ostream& out
   if (command.count("--reference-noise") > 0) {
     options.metrics.reference_noise = given.reference_noise;
   }
+  if (command.count("--step") > 0) options.step = given.step;
   const Evaluation evaluation = evaluate(options);
   const std::string json = to_json(evaluation).dump(2) + "\n";
   if (!given.directory.empty()) {
@@ -106,6 +131,8 @@ nlohmann::ordered_json to_json(const Evaluation& evaluation) {
     if (evaluation.mean[s].pixels == 0) continue;
     json[std::string(kPixelSetNames[s])] = to_json(evaluation.mean[s]);
   }
+  if (evaluation.step) json["step"] = *evaluation.step;
+  if (evaluation.lag) add_lag(*evaluation.lag, json["mean"]);
   json["surface_from"] = evaluation.surface_from;
   if (!evaluation.age_from.empty()) json["age_from"] = evaluation.age_from;
   json["bad_pixels"] = evaluation.bad_pixels;
@@ -114,7 +141,12 @@ nlohmann::ordered_json to_json(const Evaluation& evaluation) {
     json["skipped"].push_back({{"frame", skipped.frame}, {"reason", skipped.reason}});
   }
   json["per_frame"] = Json::array();
-  for (const FrameFigures& frame : evaluation.frames) json["per_frame"].push_back(to_json(frame));
+  for (const FrameFigures& frame : evaluation.frames) {
+    Json& entry = json["per_frame"].emplace_back(to_json(frame));
+    if (!evaluation.lag) continue;
+    const auto reached = evaluation.lag->reached.find(frame.frame);
+    if (reached != evaluation.lag->reached.end()) entry["step_reached"] = reached->second;
+  }
   return json;
 }
 
@@ -132,7 +164,8 @@ std::string to_table(const Evaluation& evaluation) {
     for (const Figures& set : evaluation.mean) text += cell(set.values[m]);
     text += '\n';
   }
-  text += fmt::format("\nyoung: fewer than {} frames of history; - not measured\n", kYoungAge);
+  text += '\n' + lag_lines(evaluation);
+  text += fmt::format("young: fewer than {} frames of history; - not measured\n", kYoungAge);
   text += evaluation.metrics.is_display
               ? std::string("values of 8-bit pictures as stored\n")
               : fmt::format("psnr, ssim, ms_ssim, tpsnr: of sRGB(clamp({} * value, 0, 1))\n",

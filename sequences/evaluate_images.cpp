@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sequences/exr_io.h"
+#include "sequences/flythrough.h"
 #include "sequences/ldr_image.h"
 
 namespace eigenlight {
@@ -95,6 +96,15 @@ bool mark_ages(const Source& source, LoadedFrame& out, const char* role) {
   return true;
 }
 
+// What `render --perturb step` wrote to the file, if this is one of its files.
+std::optional<int> step_of(const Source& source) {
+  if (!source.reader) return std::nullopt;
+  const auto attribute = source.reader->attribute(kPerturbAttribute);
+  const auto* text = attribute ? std::get_if<std::string>(&*attribute) : nullptr;
+  if (!text || !text->starts_with("step")) return std::nullopt;
+  return parse_perturbation(*text).step_frame;
+}
+
 bool is_finite(const Planes<3>& colors, int x, int y) {
   return std::isfinite(colors[0](x, y)) && std::isfinite(colors[1](x, y)) &&
          std::isfinite(colors[2](x, y));
@@ -144,6 +154,8 @@ LoadedFrame load_frame(int frame, const FramePaths& paths, const EvaluateOptions
     out.surface_from = "all pixels";
   }
   if (!mark_ages(test, out, "test")) (void)mark_ages(reference, out, "reference");
+  out.step = step_of(test);
+  if (!out.step) out.step = step_of(reference);
   out.images.test = std::move(test.colors);
   out.images.reference = std::move(reference.colors);
   if (reference_b) out.images.reference_b = std::move(reference_b->colors);

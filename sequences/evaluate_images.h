@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "sequences/evaluate.h"
@@ -18,7 +19,8 @@ struct FramePaths {
 struct LoadedFrame {
   MetricFrame images;  ///< bits are filled; pixels with NaN or Inf lack kFiniteBit
   std::int64_t bad_pixels = 0;
-  std::string bad;  ///< one line on the first file with NaN or Inf, or empty
+  std::string bad;          ///< one line on the first file with NaN or Inf, or empty
+  std::optional<int> step;  ///< first frame of a light step, as the files have it
   std::string surface_from, age_from;
 };
 

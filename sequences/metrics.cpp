@@ -20,6 +20,7 @@ constexpr std::array<std::uint8_t, kPixelSetCount> kSetBits{kSurfaceBit, kYoungB
 struct Sums {
   std::int64_t pixels = 0, temporal_pixels = 0;
   double square = 0.0, relative = 0.0, display = 0.0, smape = 0.0, noise = 0.0;
+  double test = 0.0, reference = 0.0;
   double temporal = 0.0, temporal_display = 0.0, flicker = 0.0;
 
   void add(const Sums& other) {
@@ -30,6 +31,8 @@ struct Sums {
     display += other.display;
     smape += other.smape;
     noise += other.noise;
+    test += other.test;
+    reference += other.reference;
     temporal += other.temporal;
     temporal_display += other.temporal_display;
     flicker += other.flicker;
@@ -64,6 +67,8 @@ void add_still(const Sample& s, Sums& sums) {
   sums.relative += product * scale;
   sums.display += s.display_error * s.display_error;
   sums.smape += std::abs(s.x - s.r) / (std::abs(s.x) + std::abs(s.r) + kSmapeFloor);
+  sums.test += s.x;
+  sums.reference += s.r;
   sums.noise += 0.25 * (s.a - s.b) * (s.a - s.b) * scale;
 }
 
@@ -138,6 +143,8 @@ Figures to_figures(const Sums& sums, const MetricOptions& options, bool two_refe
   out[Metric::kRelmse] = sums.relative * scale - options.reference_noise.value_or(0.0);
   out[Metric::kPsnr] = decibels(sums.display * scale);
   out[Metric::kSmape] = sums.smape * scale;
+  out[Metric::kLight] = sums.test * scale;
+  out[Metric::kReferenceLight] = sums.reference * scale;
   out[Metric::kReferenceNoise] = options.reference_noise;
   if (two_references) out[Metric::kReferenceNoise] = sums.noise * scale;
   fill_temporal(sums, options, out);

@@ -28,6 +28,8 @@ enum class Metric {
   kTemporalError,  ///< (u) mean (e_t - e_(t-1))^2; with two mean (eA_t - eA_(t-1))(eB_t - eB_(t-1))
   kTpsnr,          ///< dB, -10 log10 mean of (d(x) - d(r) now, less the same one frame ago)^2
   kReferenceNoise,  ///< relMSE of r itself: mean (A - B)^2 / (4 (r^2 + 0.01)), or as given
+  kLight,           ///< mean x
+  kReferenceLight,  ///< mean r
   kFlicker,         ///< mean (exposure * (x_t - x_(t-1)))^2 (Chen 2012, 4.2): camera at rest only
   kFlickerUnseen,   ///< 1 if flicker < 2.5e-5, else 0; its mean is the share of frame pairs
   kCount
@@ -42,6 +44,8 @@ inline constexpr std::array<std::string_view, kMetricCount> kMetricNames{"mse",
                                                                          "temporal_error",
                                                                          "tpsnr",
                                                                          "reference_noise_relmse",
+                                                                         "light",
+                                                                         "reference_light",
                                                                          "flicker",
                                                                          "flicker_unseen_share"};
 

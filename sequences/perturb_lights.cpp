@@ -56,71 +56,82 @@ float emissive_power(const Scene& scene) {
   return power;
 }
 
-}  // namespace
-
-LightPerturbation::LightPerturbation(const Scene& scene)
-    : rest_(scene.lights), up_(normalize(scene.up)) {
-  if (!rest_.suns.empty()) {
-    target_ = Target::kSuns;
-    return;
+void scale(Lights& lights, MainLight light, float factor) {
+  switch (light.kind) {
+    case MainLight::Kind::kSuns:
+      for (SunLight& sun : lights.suns) sun.irradiance *= factor;
+      break;
+    case MainLight::Kind::kRect:
+      lights.rects[light.index].radiance *= factor;
+      break;
+    case MainLight::Kind::kSphere:
+      lights.spheres[light.index].radiance *= factor;
+      break;
+    case MainLight::Kind::kEmissive:
+      lights.emissive_scale *= factor;
+      break;
+    case MainLight::Kind::kSky:
+      lights.sky *= factor;
+      lights.environment_scale *= factor;
+      break;
   }
-  float strongest = 0.0f;
-  const auto offer = [&](float power, Target target, std::size_t index) {
-    if (!(power > strongest)) return;
-    strongest = power;
-    target_ = target;
-    index_ = index;
-  };
-  for (std::size_t i = 0; i < rest_.rects.size(); ++i) {
-    const AreaRect& r = rest_.rects[i];
-    const float area = 4.0f * glm::length(cross(r.half_u, r.half_v));
-    offer(glm::pi<float>() * area * mean(r.radiance), Target::kRect, i);
-  }
-  for (std::size_t i = 0; i < rest_.spheres.size(); ++i) {
-    const SphereLight& s = rest_.spheres[i];
-    const float area = 4.0f * glm::pi<float>() * s.radius * s.radius;
-    offer(glm::pi<float>() * area * mean(s.radiance), Target::kSphere, i);
-  }
-  offer(emissive_power(scene), Target::kEmissive, 0);
 }
 
+}  // namespace
+
+MainLight main_light(const Scene& scene) {
+  using Kind = MainLight::Kind;
+  MainLight main;
+  if (!scene.lights.suns.empty()) return {Kind::kSuns, 0};
+  float strongest = 0.0f;
+  const auto offer = [&](float power, Kind kind, std::size_t index) {
+    if (!(power > strongest)) return;
+    strongest = power;
+    main = {kind, index};
+  };
+  for (std::size_t i = 0; i < scene.lights.rects.size(); ++i) {
+    const AreaRect& r = scene.lights.rects[i];
+    const float area = 4.0f * glm::length(cross(r.half_u, r.half_v));
+    offer(glm::pi<float>() * area * mean(r.radiance), Kind::kRect, i);
+  }
+  for (std::size_t i = 0; i < scene.lights.spheres.size(); ++i) {
+    const SphereLight& s = scene.lights.spheres[i];
+    const float area = 4.0f * glm::pi<float>() * s.radius * s.radius;
+    offer(glm::pi<float>() * area * mean(s.radiance), Kind::kSphere, i);
+  }
+  offer(emissive_power(scene), Kind::kEmissive, 0);
+  return main;
+}
+
+LightPerturbation::LightPerturbation(const Scene& scene)
+    : rest_(scene.lights), main_(main_light(scene)), up_(normalize(scene.up)) {}
+
 Lights LightPerturbation::at(int frame) const {
+  using Kind = MainLight::Kind;
   const int step = ((frame % kLightPeriod) + kLightPeriod) % kLightPeriod;
   const float phase =
       glm::two_pi<float>() * static_cast<float>(step) / static_cast<float>(kLightPeriod);
   const float sweep = kLightSweep * std::sin(phase);
-  const float pulse = 1.0f + kLightPulse * std::cos(phase);
   Lights lights = rest_;
-  switch (target_) {
-    case Target::kSuns:
-      for (SunLight& sun : lights.suns) {
-        sun.to_light = swept_sun(sun.to_light, up_, sweep);
-        sun.irradiance *= pulse;
-      }
-      break;
-    case Target::kRect: {
-      AreaRect& rect = lights.rects[index_];
-      rect.half_v = turned(rect.half_v, sweep, normalize(rect.half_u));
-      rect.radiance *= pulse;
-      break;
-    }
-    case Target::kSphere: {
-      SphereLight& sphere = lights.spheres[index_];
-      const glm::vec3 down = -3.0f * sphere.radius * up_;
-      sphere.center += turned(down, sweep, horizontal(up_, {0, 0, 1})) - down;
-      sphere.radiance *= pulse;
-      break;
-    }
-    case Target::kEmissive:
-      lights.emissive_tilt = turned(-kLobe * up_, sweep, horizontal(up_, {0, 0, 1}));
-      lights.emissive_scale *= pulse;
-      break;
-    case Target::kSky:
-      lights.sky *= pulse;
-      lights.environment_scale *= pulse;
-      break;
+  scale(lights, main_, 1.0f + kLightPulse * std::cos(phase));
+  if (main_.kind == Kind::kSuns) {
+    for (SunLight& sun : lights.suns) sun.to_light = swept_sun(sun.to_light, up_, sweep);
+  } else if (main_.kind == Kind::kRect) {
+    AreaRect& rect = lights.rects[main_.index];
+    rect.half_v = turned(rect.half_v, sweep, normalize(rect.half_u));
+  } else if (main_.kind == Kind::kSphere) {
+    SphereLight& sphere = lights.spheres[main_.index];
+    const glm::vec3 down = -3.0f * sphere.radius * up_;
+    sphere.center += turned(down, sweep, horizontal(up_, {0, 0, 1})) - down;
+  } else if (main_.kind == Kind::kEmissive) {
+    lights.emissive_tilt = turned(-kLobe * up_, sweep, horizontal(up_, {0, 0, 1}));
   }
   return lights;
+}
+
+LightStep::LightStep(const Scene& scene, int frame)
+    : before_(scene.lights), after_(scene.lights), frame_(frame) {
+  scale(after_, main_light(scene), kLightStep);
 }
 
 }  // namespace eigenlight

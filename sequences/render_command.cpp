@@ -52,7 +52,7 @@ std::vector<ExrAttribute> file_attributes(const RunDescription& run) {
           {"eigenlight.spp", run.spp},
           {"eigenlight.bounces", run.bounces},
           {"eigenlight.seed", fmt::format("{}", run.seed)},
-          {"eigenlight.perturb", run.perturb},
+          {kPerturbAttribute, run.perturb},
           {"eigenlight.exposure", run.exposure}};
 }
 

@@ -85,7 +85,7 @@ RenderPlan make_plan(const RenderSettings& settings) {
   check_range("threads", settings.threads, 0, 1024);
   plan.bases = settings.bases;
   plan.perturbation = parse_perturbation(settings.perturb);
-  plan.perturb = settings.perturb;
+  plan.perturb = format_perturbation(plan.perturbation);
   plan.layers = parse_layers(settings.layers);
 
   RenderOptions& render = plan.render;

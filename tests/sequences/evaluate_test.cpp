@@ -1,5 +1,7 @@
 #include "sequences/evaluate.h"
 
+#include <OpenImageIO/imagebufalgo.h>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -11,6 +13,7 @@
 
 #include "sequences/evaluate_command.h"
 #include "sequences/exr_io.h"
+#include "sequences/flythrough.h"
 #include "sequences/ldr_image.h"
 #include "tests/support/temp_dir.h"
 
@@ -30,6 +33,7 @@ struct Fake {
   Extent extent = kSize;
   bool has_masks = false;
   float first_pixel = -1.0f;  ///< in place of `value`, if not -1
+  std::string perturb = {};   ///< what the header says; empty: nothing
 };
 
 // The left half has age 1, the right half age 9; the upper row has no surface.
@@ -52,7 +56,9 @@ void write_fake(const std::filesystem::path& path, const Fake& fake) {
     channels.push_back({"id", ExrType::kUint, &id});
     channels.push_back({"age", ExrType::kFloat, &age});
   }
-  write_exr(path, channels, {});
+  std::vector<ExrAttribute> attributes;
+  if (!fake.perturb.empty()) attributes.push_back({kPerturbAttribute, fake.perturb});
+  write_exr(path, channels, attributes);
 }
 
 class EvaluateTest : public testing::Test {
@@ -211,6 +217,84 @@ TEST_F(EvaluateTest, JsonHasWhatWasMeasuredOnly) {
   EXPECT_EQ(json["per_frame"][1]["temporal_error"], 0.0);
   EXPECT_FALSE(json["per_frame"][1].contains("tpsnr"));  // infinite
   EXPECT_TRUE(nlohmann::json::parse(run({"--json", "--flicker"}))["mean"].contains("flicker"));
+}
+
+// A step from 0.25 to 0.5 at frame 5, which the test follows by halves.
+class EvaluateStepTest : public EvaluateTest {
+ protected:
+  void SetUp() override {
+    float missing = 0.25f;
+    for (int frame = 4; frame <= 10; ++frame) {
+      const std::string number = fmt::format("{:04}", frame);
+      const float light = frame < 5 ? 0.25f : 0.5f;
+      if (frame >= 5) missing *= 0.5f;
+      write_fake(file("t", number), {.value = frame < 5 ? light : light - missing});
+      write_fake(file("r", number), {.value = light});
+      write_fake(file("h", number), {.value = light, .perturb = "step:5"});
+    }
+  }
+};
+
+TEST_F(EvaluateStepTest, LagIsMeasuredWhereAsked) {
+  const auto json = nlohmann::json::parse(run({"--json", "--step", "5"}));
+  EXPECT_EQ(json["step"], 5);
+  // 1/2, 3/4, 7/8, 15/16 of it at frames 5 to 8.
+  EXPECT_EQ(json["mean"]["lag_frames"], 3);
+  const double squares = 1.0 / 64 + 1.0 / 256 + 1.0 / 1024 + 1.0 / 4096;
+  EXPECT_NEAR(json["mean"]["lag_error"].get<double>(), squares / 0.26, 1e-9);
+  EXPECT_FALSE(json["per_frame"][0].contains("step_reached"));
+  EXPECT_NEAR(json["per_frame"][1]["step_reached"].get<double>(), 0.5, 1e-9);
+  EXPECT_THAT(run({"--step", "5"}), HasSubstr("lag: 3 frames after the light step at 5"));
+}
+
+TEST_F(EvaluateStepTest, TheStepIsFoundInTheFiles) {
+  EvaluateOptions o = options();
+  EXPECT_FALSE(evaluate(o).lag.has_value());
+  o.reference = file("h", "####").string();
+  const Evaluation e = evaluate(o);
+  EXPECT_EQ(e.step, 5);
+  ASSERT_TRUE(e.lag.has_value());
+  EXPECT_EQ(e.lag->frames, 3);
+  // The file knows of a step, but these frames do not show it.
+  o.frames = "7-9";
+  EXPECT_EQ(evaluate(o).step, 5);
+  EXPECT_FALSE(evaluate(o).lag.has_value());
+}
+
+TEST_F(EvaluateStepTest, AStepThatIsNotReachedHasNoLag) {
+  const std::vector<std::string> early{"--step", "5", "--frames", "4-6"};
+  auto words = early;
+  words.push_back("--json");
+  const auto json = nlohmann::json::parse(run(words));
+  EXPECT_FALSE(json["mean"].contains("lag_frames"));
+  EXPECT_FALSE(json["mean"].contains("lag_error"));
+  EXPECT_NEAR(json["per_frame"][2]["step_reached"].get<double>(), 0.75, 1e-9);
+  EXPECT_THAT(run(early), HasSubstr("not 90 % of the light step at 5, 75.0 % at most"));
+}
+
+TEST_F(EvaluateStepTest, AStepThatIsNotThereIsAnError) {
+  EvaluateOptions o = options();
+  o.step = 7;
+  expect_failure(o, HasSubstr("step 7: expected mean light of the reference to change by 10 %"));
+  o.step = 5;
+  o.frames = "5-9";
+  expect_failure(o, HasSubstr("between frames 4 and 5, both measured"));
+}
+
+TEST_F(EvaluateTest, PngComparesAsStored) {
+  const auto write = [&](const char* name, float value) {
+    OIIO::ImageBuf picture(OIIO::ImageSpec(kSize.width, kSize.height, 3, OIIO::TypeUInt8));
+    const float color[3] = {value, value, value};
+    OIIO::ImageBufAlgo::fill(picture, color);
+    ASSERT_TRUE(picture.write((dir_ / name).string()));
+  };
+  write("a.png", 128.0f / 255.0f);
+  write("b.png", 77.0f / 255.0f);
+  EvaluateOptions o;
+  o.test = (dir_ / "a.png").string();
+  o.reference = (dir_ / "b.png").string();
+  EXPECT_NEAR(evaluate(o).mean[0][Metric::kMse].value(), 0.04, 1e-8);  // 51 / 255 = 0.2
+  EXPECT_NEAR(evaluate(o).mean[0][Metric::kPsnr].value(), 13.9794, 1e-4);
 }
 
 TEST_F(EvaluateTest, TableAndDirectory) {

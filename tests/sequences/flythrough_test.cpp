@@ -13,6 +13,7 @@
 #include "render/clearance.h"
 #include "render/embree_scene.h"
 #include "sequences/camera_path.h"
+#include "sequences/perturb_lights.h"
 #include "sequences/perturb_objects.h"
 
 namespace eigenlight {
@@ -102,6 +103,29 @@ TEST(Flythrough, PerturbsWhatItIsToldTo) {
   }
 }
 
+TEST(Flythrough, StepsItsLightAtTheFrameThatItIsTold) {
+  const Scene plain = make_builtin_scene("cornell");
+  for (const auto& [text, frame] : {std::pair{"step", 24}, std::pair{"step:7", 7}}) {
+    Scene scene = plain;
+    const auto animation = make_flythrough(scene, parse_perturbation(text), kExtent);
+    const glm::vec3 rest = plain.lights.rects[0].radiance;
+    EXPECT_EQ(animation->state(frame - 1).lights.rects[0].radiance, rest) << text;
+    EXPECT_EQ(animation->state(frame).lights.rects[0].radiance, kLightStep * rest) << text;
+    EXPECT_TRUE(animation->state(frame).poses.empty());
+  }
+}
+
+TEST(Flythrough, PerturbationsAreReadAndWritten) {
+  for (const char* text : {"none", "lights", "objects", "all", "step:1", "step:1000000"}) {
+    EXPECT_EQ(format_perturbation(parse_perturbation(text)), text);
+  }
+  EXPECT_EQ(format_perturbation(parse_perturbation("step")), "step:24");
+  for (const char* text : {"", "step:", "step:0", "step:-3", "step:1000001", "step:4x",
+                           "step:99999999999999999999", "lights:3", "Step", ":"}) {
+    EXPECT_THROW((void)parse_perturbation(text), std::invalid_argument) << text;
+  }
+}
+
 TEST(Flythrough, IsTheSameEveryTime) {
   Scene a = make_builtin_scene("cornell"), b = a;
   const auto first = make_flythrough(a, Perturbation::kAll, kExtent);
@@ -128,7 +152,7 @@ TEST(Flythrough, UnknownPerturbationListsTheKnownOnes) {
     (void)parse_perturbation("wind");
     FAIL() << "expected an exception";
   } catch (const std::invalid_argument& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("none, lights, objects or all"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("none, lights, objects, all, step or step:FRAME"));
   }
 }
 

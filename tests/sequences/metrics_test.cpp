@@ -59,6 +59,8 @@ TEST(Metrics, ConstantOffsetHasClosedForms) {
   EXPECT_NEAR(value(f, Metric::kMse), 0.0625, 1e-12);
   EXPECT_NEAR(value(f, Metric::kRelmse), 0.0625 / 0.26, 1e-12);
   EXPECT_NEAR(value(f, Metric::kSmape), 0.25 / 1.26, 1e-12);
+  EXPECT_EQ(value(f, Metric::kLight), 0.75);
+  EXPECT_EQ(value(f, Metric::kReferenceLight), 0.5);
   const double d = display_value(0.75, {}) - display_value(0.5, {});
   EXPECT_NEAR(value(f, Metric::kPsnr), -20.0 * std::log10(d), 1e-9);
 }

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
+
+#include "render/builtin_scenes.h"
 
 namespace eigenlight {
 namespace {
@@ -98,6 +101,68 @@ TEST(LightPerturbation, EmissiveTrianglesSwingTheirLobe) {
   }
   EXPECT_NEAR(farthest, 19.7f, 0.1f);
   EXPECT_NEAR(lights.at(9).emissive_scale.x, 0.4f, 1e-5f);
+}
+
+/// What the main light of a scene is multiplied by at a frame, as the darkest and the brightest
+/// color say.
+glm::vec2 factor(const Lights& now, const Lights& rest) {
+  glm::vec2 range(kInfinity, 0.0f);
+  const auto compare = [&](const glm::vec3& a, const glm::vec3& b) {
+    for (int c = 0; c < 3; ++c) {
+      if (b[c] > 0.0f) range = {std::min(range.x, a[c] / b[c]), std::max(range.y, a[c] / b[c])};
+    }
+  };
+  compare(now.sky, rest.sky);
+  compare(now.emissive_scale, rest.emissive_scale);
+  for (std::size_t i = 0; i < rest.suns.size(); ++i) {
+    compare(now.suns[i].irradiance, rest.suns[i].irradiance);
+    EXPECT_EQ(now.suns[i].to_light, rest.suns[i].to_light);
+  }
+  for (std::size_t i = 0; i < rest.rects.size(); ++i) {
+    compare(now.rects[i].radiance, rest.rects[i].radiance);
+    EXPECT_EQ(now.rects[i].half_v, rest.rects[i].half_v);
+  }
+  for (std::size_t i = 0; i < rest.spheres.size(); ++i) {
+    compare(now.spheres[i].radiance, rest.spheres[i].radiance);
+    EXPECT_EQ(now.spheres[i].center, rest.spheres[i].center);
+  }
+  return range;
+}
+
+class StepInLight : public testing::TestWithParam<BuiltinScene> {};
+
+TEST_P(StepInLight, BrightensTheMainLightOnceAndForAll) {
+  const Scene scene = GetParam().make();
+  const LightStep step(scene, 24);
+  for (const int frame : {-5, 0, 23}) {
+    EXPECT_EQ(factor(step.at(frame), scene.lights), glm::vec2(1.0f)) << frame;
+  }
+  for (const int frame : {24, 25, 100000}) {
+    EXPECT_NEAR(factor(step.at(frame), scene.lights).y, kLightStep, 1e-5f) << frame;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, StepInLight, testing::ValuesIn(builtin_scenes()),
+                         [](const auto& built) { return std::string(built.param.name); });
+
+TEST(LightStep, OtherLightsStay) {
+  Scene scene;
+  scene.lights.rects.push_back({{0, 3, 0}, {0, 0, 1}, {1, 0, 0}, glm::vec3(5)});
+  scene.lights.spheres.push_back({{5, 3, 0}, 4.0f, glm::vec3(6)});
+  scene.lights.sky = {1, 2, 3};
+  const LightStep step(scene, 1);
+  EXPECT_EQ(step.at(1).spheres[0].radiance, glm::vec3(6.0f * kLightStep));
+  EXPECT_EQ(step.at(1).rects[0].radiance, glm::vec3(5));
+  EXPECT_EQ(step.at(1).sky, scene.lights.sky);
+}
+
+TEST(LightStep, SkyAndEnvironmentAloneStep) {
+  Scene scene;
+  scene.lights.sky = {1, 2, 3};
+  const LightStep step(scene, 7);
+  EXPECT_EQ(step.at(7).sky, kLightStep * scene.lights.sky);
+  EXPECT_EQ(step.at(7).environment_scale, kLightStep);
+  EXPECT_EQ(step.at(6).environment_scale, 1.0f);
 }
 
 TEST(LightPerturbation, SkyAlonePulses) {
