@@ -1,71 +1,158 @@
 #!/usr/bin/env python3
-"""Prints a Markdown table of bench_denoise: table.py RESULT.json [PEER]
+"""Prints measurements as Markdown tables.
+
+table.py roofline RESULT.json [--heights 720] [--bases 5]
+    each stage beside its floor: the copy of the bytes that it must move, or, for stages that are
+    bound by arithmetic, its operations at the peak of multiply-adds, both measured in the same run
+table.py targets RESULT.json
+    CPU time of each stage by instruction set
+table.py scaling RESULT.json
+    of bench_scaling: the loop by pixels and by bases, the guided filter by radius
+table.py peer RESULT.json --peer PROGRAM
+    the denoiser beside OIDN balanced (the program oidn_peer) on frames of the same sizes
 
 RESULT.json comes from `bench_denoise --benchmark_out=RESULT.json --benchmark_out_format=json`.
-PEER is the program oidn_peer; with it the table ends with OIDN's CPU time on frames of the same
-sizes, and the denoiser's share of it.
 """
 
-import json
+import argparse
 import os
 import re
 import subprocess
 import sys
 
-NAME = re.compile(r"(\w+)/height:(\d+)/bases:(\d+)/threads:(\d+)")
-WITHOUT_BASES = {"innovation", "budget", "atrous", "guided"}
+from results import load_results
 
 
-def load(path):
-    """Rows of (stage, height, bases, threads, counters), without those that failed."""
-    with open(path, encoding="utf-8") as file:
-        results = json.load(file)["benchmarks"]
+def markdown(head, rows):
+    """A table whose first column is text and whose others are numbers."""
+    lines = ["| " + " | ".join(head) + " |", "| --- |" + " ---: |" * (len(head) - 1)]
+    lines += ["| " + " | ".join(cells) + " |" for cells in rows]
+    return "\n".join(lines)
+
+
+def medians(results):
+    """One result for each name: the repetition of median CPU time."""
+    by_name = {}
     for result in results:
-        match = NAME.match(result["name"])
-        if result.get("error_occurred"):
-            sys.exit(f"{path}: {result['name']}: {result['error_message']}")
-        if match:
-            stage, height, bases, threads = match.groups()
-            yield stage, int(height), int(bases), int(threads), result
+        by_name.setdefault(result.name, []).append(result)
+    for group in by_name.values():
+        yield sorted(group, key=lambda result: result["cpu_ms"])[(len(group) - 1) // 2]
 
 
-def peer_cpu_ms(peer, height):
+def floor_cells(result):
+    """Floor, its milliseconds, measured milliseconds, ratio: of the floor that is closer."""
+    copy, cpu = result["copy_ms"], result["cpu_ms"]
+    fma = cpu / result["fma_ratio"] if result.get("fma_ratio") else 0.0
+    if fma > copy:
+        name = f"{result['flops'] * 1e-9:.2f} GFLOP at {result['peak_gflops']:.0f} GFLOP/s"
+        return [name, f"{fma:.2f}", f"{cpu:.1f}", f"{cpu / fma:.1f}"]
+    return [f"copy {result['bytes'] * 1e-6:.0f} MB", f"{copy:.2f}", f"{cpu:.1f}", f"{cpu / copy:.1f}"]
+
+
+def roofline(results, heights, bases):
+    head = ["stage", "size", "K", "threads", "floor", "floor ms", "CPU ms", "ratio", "Mpixel/s"]
+    rows = []
+    for result in medians(results):
+        if result.target or (heights and result.height not in heights):
+            continue
+        if bases and result.bases and result.value not in bases:
+            continue
+        rows.append([result.stage, result.size, result.bases, str(result.threads)])
+        rows[-1] += floor_cells(result) + [f"{result['pixels_per_second'] * 1e-6:.1f}"]
+    return markdown(head, rows)
+
+
+def targets(results):
+    times, names = {}, {}
+    for result in medians(results):
+        names[result.target] = result.target_name
+        if result.threads > 1:
+            continue
+        case = (result.stage, result.size, result.bases)
+        times.setdefault(case, {})[result.target] = result["cpu_ms"]
+    rows = []
+    for (stage, size, bases), found in times.items():
+        if len(found) < 2:
+            continue
+        cells = [f"{found[t]:.1f}" if t in found else "" for t in sorted(names)]
+        rows.append([stage, size, bases] + cells)
+    return markdown(["stage", "size", "K"] + [f"{names[t]}, ms" for t in sorted(names)], rows)
+
+
+def scaling_table(results, stage, column, label):
+    head = [label, "CPU ms", "ns/pixel", "ratio to copy"]
+    rows = [
+        [column(result), f"{result['cpu_ms']:.1f}", f"{result['ns_per_pixel']:.1f}",
+         f"{result['ratio']:.1f}"]
+        for result in medians(results)
+        if result.stage == stage
+    ]
+    return markdown(head, rows)
+
+
+def scaling(results):
+    bases = {r.value for r in results if r.stage == "loop_pixels"}
+    size = next(r.size for r in results if r.stage == "loop_bases")
+    return "\n\n".join([
+        scaling_table(results, "loop_pixels", lambda r: r.size,
+                      f"loop, K = {', '.join(map(str, sorted(bases)))}: size"),
+        scaling_table(results, "loop_bases", lambda r: str(r.value), f"loop, {size}: K"),
+        scaling_table(results, "guided_radius", lambda r: str(r.value),
+                      f"guided filter, {size}: radius"),
+    ])
+
+
+def peer_cpu_ms(peer, size):
     """Median CPU milliseconds of OIDN balanced on one frame."""
-    size = f"{height * 16 // 9}x{height}"
     # Threads that wait must sleep, or their waiting counts as work.
     environment = dict(os.environ, OMP_WAIT_POLICY="passive")
     command = [peer, "--bench", size, "--repeat", "3"]
-    output = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
-    found = re.search(r"cpu ms: min [\d.]+ +median ([\d.]+)", output.stdout)
+    try:
+        run = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    except (OSError, subprocess.CalledProcessError) as error:
+        sys.exit(f"{' '.join(command)}: {getattr(error, 'stderr', None) or error}")
+    found = re.search(r"cpu ms: min [\d.]+ +median ([\d.]+)", run.stdout)
     if not found:
         sys.exit(f"{peer}: no CPU time in what it printed")
     return float(found.group(1))
 
 
+def peer_table(results, program):
+    ours = [r for r in medians(results) if r.stage == "denoiser" and not r.target and r.threads == 1]
+    theirs = {size: peer_cpu_ms(program, size) for size in dict.fromkeys(r.size for r in ours)}
+    head = ["size", "OIDN balanced, CPU ms", "K", "denoiser, CPU ms", "OIDN / denoiser"]
+    rows = [
+        [r.size, f"{theirs[r.size]:.0f}", r.bases, f"{r['cpu_ms']:.1f}",
+         f"{theirs[r.size] / r['cpu_ms']:.1f}"]
+        for r in ours
+    ]
+    return markdown(head, rows)
+
+
+def numbers(text):
+    return [int(word) for word in text.split(",")]
+
+
 def main():
-    if len(sys.argv) not in (2, 3):
-        sys.exit(__doc__)
-    rows = list(load(sys.argv[1]))
-    print("| stage | size | K | threads | MB moved | copy ms | CPU ms | ratio | ns/pixel |")
-    print("| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |")
-    for stage, height, bases, threads, counters in rows:
-        print(
-            f"| {stage} | {height * 16 // 9}x{height} | {'' if stage in WITHOUT_BASES else bases} "
-            f"| {threads} | {counters['bytes'] * 1e-6:.0f} | {counters['copy_ms']:.2f} "
-            f"| {counters['cpu_ms']:.1f} | {counters['ratio']:.1f} | {counters['ns_per_pixel']:.1f} |"
-        )
-    if len(sys.argv) == 2:
-        return
-    print("\n| size | OIDN balanced, CPU ms | K | threads | denoiser, CPU ms | OIDN / denoiser |")
-    print("| --- | ---: | ---: | ---: | ---: | ---: |")
-    ours = [row for row in rows if row[0] == "denoiser"]
-    peers = {height: peer_cpu_ms(sys.argv[2], height) for height in sorted({r[1] for r in ours})}
-    for _, height, bases, threads, counters in ours:
-        cpu = counters["cpu_ms"]
-        print(
-            f"| {height * 16 // 9}x{height} | {peers[height]:.0f} | {bases} | {threads} "
-            f"| {cpu:.1f} | {peers[height] / cpu:.1f} |"
-        )
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("table", choices=["roofline", "targets", "scaling", "peer"])
+    parser.add_argument("result")
+    parser.add_argument("--heights", type=numbers, help="such as 720,1080; without it all")
+    parser.add_argument("--bases", type=numbers, help="such as 5; without it all")
+    parser.add_argument("--peer", help="the program oidn_peer")
+    options = parser.parse_args()
+    results = load_results(options.result)
+    if options.table == "roofline":
+        print(roofline(results, options.heights, options.bases))
+    elif options.table == "targets":
+        print(targets(results))
+    elif options.table == "scaling":
+        print(scaling(results))
+    else:
+        if not options.peer:
+            parser.error("peer: --peer PROGRAM is missing")
+        print(peer_table(results, options.peer))
 
 
 if __name__ == "__main__":
