@@ -1,0 +1,166 @@
+#!/usr/bin/env python3
+"""Tests of sequences/benchmark and of what it writes to the README."""
+
+import contextlib
+import importlib.machinery
+import importlib.util
+import io
+import json
+import pathlib
+import sys
+import tempfile
+import unittest
+import xml.etree.ElementTree
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests" / "bench"))
+sys.dont_write_bytecode = True
+
+import report  # noqa: E402
+from chart import Chart, spread  # noqa: E402
+
+loader = importlib.machinery.SourceFileLoader("benchmark", str(ROOT / "sequences" / "benchmark"))
+benchmark = importlib.util.module_from_spec(importlib.util.spec_from_loader("benchmark", loader))
+loader.exec_module(benchmark)
+
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+class FolderTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+
+class RunnerTest(FolderTest):
+    def step(self, name, text="x", program=None):
+        """Adds `text` to a file each time that it runs."""
+        log = self.folder / f"{name}.count"
+        command = ["sh", "-c", f"printf %s '{text}' >> '{log}'; echo result"]
+        return benchmark.Step(name, 1, [program] if program else [],
+                              [(command, self.folder / f"{name}.out")])
+
+    def run_steps(self, *steps):
+        state = benchmark.State(self.folder / "state.json")
+        with contextlib.redirect_stderr(io.StringIO()) as err:
+            benchmark.Runner(state, list(steps), self.folder).run_all()
+        return err.getvalue()
+
+    def count(self, name):
+        return len((self.folder / f"{name}.count").read_text())
+
+    def test_steps_run_once(self):
+        said = self.run_steps(self.step("a"), self.step("b"))
+        self.assertIn("2 min left, a", said)
+        self.assertIn("1 min left, b", said)
+        self.run_steps(self.step("a"), self.step("b"))
+        self.assertEqual((self.count("a"), self.count("b")), (1, 1))
+        self.assertEqual((self.folder / "a.out").read_text(), "result\n")
+
+    def test_other_settings_and_programs_run_again(self):
+        program = self.folder / "program"
+        program.write_text("1")
+        self.run_steps(self.step("a", "x", program))
+        self.run_steps(self.step("a", "y", program))
+        self.assertEqual(self.count("a"), 2)
+        program.write_text("2")
+        self.run_steps(self.step("a", "y", program))
+        self.assertEqual(self.count("a"), 3)
+
+    def test_a_failed_step_keeps_those_before_it_and_leaves_no_half_result(self):
+        target = self.folder / "broken.out"
+        broken = benchmark.Step("broken", 1, [], [(["sh", "-c", "echo half; exit 3"], target)])
+        with self.assertRaises(SystemExit) as raised:
+            self.run_steps(self.step("a"), broken)
+        self.assertIn("ended with 3", str(raised.exception))
+        self.assertFalse(target.exists())
+        state = benchmark.State(self.folder / "state.json")
+        self.assertTrue(state.is_done(self.step("a")))
+        self.assertFalse(state.is_done(broken))
+
+    def test_bar_counts_down(self):
+        self.assertIn("." * 30, benchmark.bar(0, 10, 10, "a"))
+        self.assertIn("#" * 15 + "." * 15 + "]    5 min left, a", benchmark.bar(5, 10, 5, "a"))
+        self.assertIn("#" * 30, benchmark.bar(11, 10, 0, "a"))
+
+
+class SectionTest(unittest.TestCase):
+    TEXT = "a\n<!-- benchmark:x -->\nold\n<!-- /benchmark:x -->\nb\n<!-- benchmark:y -->\n<!-- /benchmark:y -->\n"
+
+    def test_replaces_between_its_marks_only(self):
+        text = report.set_sections(self.TEXT, {"x": "new\n"})
+        self.assertEqual(text, self.TEXT.replace("old", "new"))
+        self.assertEqual(report.set_sections(text, {"x": "new"}), text)
+
+    def test_missing_marks_are_named(self):
+        for broken in (self.TEXT.replace("/benchmark:x", "/benchmark:z"), self.TEXT + self.TEXT, ""):
+            with self.assertRaisesRegex(ValueError, "benchmark:x"):
+                report.set_sections(broken, {"x": "new"})
+
+    def test_the_readme_has_all_marks(self):
+        readme = (ROOT / "README.md").read_text(encoding="utf-8")
+        names = ("quality", "roofline", "peer", "render", "compare", "scaling", "targets")
+        report.set_sections(readme, {name: "new" for name in names})
+
+
+class ChartTest(FolderTest):
+    def test_points_lie_where_their_logarithms_say(self):
+        chart = Chart("error & time", "ms", "relMSE")
+        chart.add("ours", [(1000, 0.01), (10, 1.0), (100, 0.1)])
+        chart.write(self.folder / "deep" / "a.svg")
+        root = xml.etree.ElementTree.parse(self.folder / "deep" / "a.svg").getroot()
+        points = [tuple(map(float, p.split(","))) for p in
+                  root.find(f"{SVG}polyline").get("points").split()]
+        self.assertAlmostEqual(points[1][0] - points[0][0], points[2][0] - points[1][0], delta=0.2)
+        self.assertAlmostEqual(points[1][1] - points[0][1], points[2][1] - points[1][1], delta=0.2)
+        self.assertLess(points[0][0], points[2][0])
+        self.assertLess(points[0][1], points[2][1])  # less error is lower
+        words = [element.text for element in root.iter(f"{SVG}text")]
+        for wanted in ("error & time", "ms", "relMSE", "ours", "100", "0.1"):
+            self.assertIn(wanted, words)
+
+    def test_labels_do_not_overlap(self):
+        places = spread([10.0, 50.0, 12.0, 11.0], 17)
+        self.assertEqual(places, [10.0, 61.0, 44.0, 27.0])
+
+    def test_what_cannot_be_drawn_is_refused(self):
+        with self.assertRaisesRegex(ValueError, "nothing to draw"):
+            Chart("empty", "x", "y").svg()
+        chart = Chart("zero", "x", "y")
+        chart.add("a", [(1, 0.0)])
+        with self.assertRaisesRegex(ValueError, "no place for 0"):
+            chart.svg()
+
+
+class ReportTest(FolderTest):
+    def test_compare_draws_each_scene_and_marks_the_best(self):
+        def cell(name, ms, error):
+            return {"contender": name, "spp": 1, "cpu_ms": {"total": ms}, "mean": {"relmse": error}}
+
+        results = {
+            "settings": {"contenders": [{"label": "ours"}, {"label": "mean"}, {"label": "OIDN"}],
+                         "width": 320, "height": 180, "frames": "40-43", "spp": [1, 2]},
+            "scenes": [{"name": "atrium, lights", "equal_time": {"ms": 20, "relmse": {"ours": 0.01, "mean": 0.05}},
+                        "cells": [cell("ours", 10, 0.02), cell("ours", 20, 0.01),
+                                  cell("mean", 9, 0.06), cell("mean", 19, -0.001)]}]}
+        path = self.folder / "results.json"
+        path.write_text(json.dumps(results))
+        text = report.compare(path, self.folder / "plots")
+        self.assertIn("| atrium, lights | 20 | **0.01** | 0.05 | - |", text)
+        svg = (self.folder / "plots" / "error-time-atrium-lights.svg").read_text()
+        root = xml.etree.ElementTree.fromstring(svg)
+        # A figure below zero is noise of the references: it has no place on the plot.
+        self.assertEqual([len(line.get("points").split()) for line in root.iter(f"{SVG}polyline")],
+                         [2, 1])
+
+    def test_quality_is_a_table_of_methods_by_scenes(self):
+        figures = {"atrium": {"noisy": {"relmse": 1.0}, "eigenlight": {"relmse": 0.01}},
+                   "sponza": {"noisy": {"relmse": 0.5}, "eigenlight": {"relmse": 0.001}}}
+        text = report.quality_pivot(figures, "relmse")
+        self.assertIn("|  | atrium | crytek-sponza |", text)
+        self.assertIn("| `eigenlight` | 0.01 (0.0100) | 0.001 (0.0020) |", text)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,181 @@
+#!/usr/bin/env python3
+"""Puts what sequences/benchmark has measured into the README: report.py DIRECTORY [README PLOTS]
+
+Each table goes between the markers `<!-- benchmark:NAME -->` and `<!-- /benchmark:NAME -->`; SVG
+plots go to the folder PLOTS. Steps without a result in DIRECTORY leave their table as it is.
+"""
+
+import os
+import pathlib
+import re
+import sys
+
+import table
+from chart import COLORS, Chart
+from results import load_json, load_results
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "sequences"))
+
+from quality_table import log_figures  # noqa: E402
+
+SCENE_NAMES = {"lights": "atrium, lights", "objects": "atrium, objects", "sponza": "crytek-sponza"}
+METHOD_COLORS = ["eigenlight", "OIDN", "svgf", "chen2012", "mean", "guided", "noisy"]
+
+
+def set_sections(text, sections):
+    """`text` with what stands between `<!-- benchmark:NAME -->` and `<!-- /benchmark:NAME -->`
+    replaced for each name; ValueError naming the first that is not there exactly once."""
+    for name, content in sections.items():
+        begin, end = f"<!-- benchmark:{name} -->", f"<!-- /benchmark:{name} -->"
+        if text.count(begin) != 1 or text.count(end) != 1 or text.index(begin) > text.index(end):
+            raise ValueError(f"expected one '{begin}' and one '{end}' behind it")
+        head, rest = text.split(begin)
+        text = f"{head}{begin}\n{content.strip()}\n{end}{rest.split(end)[1]}"
+    return text
+
+
+def roofline(path):
+    results = load_results(path)
+    return table.roofline([r for r in results if r.threads == 1], [720], [5])
+
+
+def scaling(path, plots):
+    """The tables and two plots of bench_scaling."""
+    results = list(table.medians(load_results(path)))
+    pixels = [(r.pixels * 1e-6, r["cpu_ms"]) for r in results if r.stage == "loop_pixels"]
+    chart = Chart("CPU time against pixels", "megapixels", "CPU ms a frame")
+    chart.add("eigenlight, K = 3", pixels)
+    chart.write(plots / "scaling-pixels.svg")
+    radii = [(r.value, r["ns_per_pixel"]) for r in results if r.stage == "guided_radius"]
+    chart = Chart("Guided filter against its radius", "radius, pixels", "CPU ns a pixel",
+                  is_log=(False, False))
+    chart.add("guided filter", radii)
+    chart.write(plots / "scaling-radius.svg")
+    images = "".join(f"![{alt}](sequences/plots/{name}.svg)\n" for name, alt in (
+        ("scaling-pixels", "CPU time of the loop against pixels"),
+        ("scaling-radius", "CPU time of the guided filter against its radius")))
+    return table.scaling(results) + "\n\n" + images
+
+
+def quality_figures(directory):
+    """figures[scene][method]: the means of `eigenlight evaluate`; in the order of measurement."""
+    paths = sorted(directory.glob("*/*.json"))
+    found = {}
+    for scene in ("atrium", "lights", "objects", "sponza"):
+        methods = {p.stem: load_json(p)["mean"] for p in paths if p.parent.name == scene}
+        if methods:
+            found[scene] = methods
+    return found
+
+
+def quality_pivot(figures, metric):
+    """Methods by scenes: the figure, and as a multiple of the noisy input."""
+    order = ("noisy", "mean", "chen2012", "oidn", "eigenlight")
+    methods = [m for m in order if all(m in of_scene for of_scene in figures.values())]
+    rows = []
+    for method in methods:
+        cells = [{"oidn": "OIDN balanced", "noisy": "noisy"}.get(method, f"`{method}`")]
+        for of_scene in figures.values():
+            value, noisy = of_scene[method][metric], of_scene["noisy"][metric]
+            cells.append(f"{value:.3g}" + ("" if method == "noisy" else f" ({value / noisy:.4f})"))
+        rows.append(cells)
+    return table.markdown([""] + [SCENE_NAMES.get(s, s) for s in figures], rows)
+
+
+def quality(directory, settings):
+    figures = quality_figures(directory)
+    lines = [settings, "", "relMSE, and as a multiple of the noisy input:", "",
+             quality_pivot(figures, "relmse"), "",
+             "Temporal error, and as a multiple of the noisy input:", "",
+             quality_pivot(figures, "temporal_error"), ""]
+    extra = [(s, log_figures(directory / s / "eigenlight")[0]) for s in figures]
+    lines.append("Samples that resampling adds to each pixel's own: " +
+                 ", ".join(f"{SCENE_NAMES.get(s, s)} {e:.2f}" for s, e in extra) + ".")
+    return "\n".join(lines)
+
+
+def curves(scene):
+    """(CPU ms a frame, relMSE) by contender: the points of error against time."""
+    found = {}
+    for cell in scene["cells"]:
+        error = cell["mean"].get("relmse")
+        if error is not None and error > 0.0:
+            found.setdefault(cell["contender"], []).append((cell["cpu_ms"]["total"], error))
+    return found
+
+
+def compare(path, plots):
+    """A plot of error against time for each scene, and errors at equal time."""
+    results = load_json(path)
+    colors = {name: COLORS[i] for i, name in enumerate(METHOD_COLORS)}
+    parts, rows, labels = [], [], [c["label"] for c in results["settings"]["contenders"]]
+    for scene in results["scenes"]:
+        name = re.sub(r"[^\w-]+", "-", scene["name"])
+        chart = Chart(f"{scene['name']}: error against time", "CPU ms a frame, rendering + denoising",
+                      "relMSE")
+        for label, points in curves(scene).items():
+            chart.add(label, points)
+        chart.write(plots / f"error-time-{name}.svg", colors)
+        parts.append(f"![{scene['name']}: relMSE against CPU time](sequences/plots/error-time-{name}.svg)")
+        errors = scene["equal_time"]["relmse"]
+        best = min(errors.values()) if errors else None
+        cells = [f"{errors[l]:.3g}" if l in errors else "-" for l in labels]
+        cells = [f"**{c}**" if errors.get(l) == best and l in errors else c
+                 for l, c in zip(labels, cells)]
+        rows.append([scene["name"], f"{scene['equal_time']['ms']:.0f}"] + cells)
+    settings = results["settings"]
+    head = (f"{settings['width']}x{settings['height']}, frames {settings['frames']}, "
+            f"{', '.join(map(str, settings['spp']))} samples a pixel; relMSE at the same total CPU "
+            "time, read off the measured curves; - where a curve does not reach that time:")
+    return "\n\n".join(["\n".join(parts), head, table.markdown(["scene", "ms"] + labels, rows)])
+
+
+def render(path):
+    rows = []
+    for entry in load_json(path)["benchmarks"]:
+        if not entry.get("error_occurred"):
+            name = entry["name"].split("/")[0].removeprefix("indirect_")
+            rows.append([name, f"{entry['rays'] * 1e-6:.2f}", f"{entry['rays_per_sample']:.2f}"])
+    return table.markdown(["scene", "million rays/s, two cores", "rays/sample"], rows)
+
+
+def sections(directory, plots):
+    """The README's sections by name, as far as there are results."""
+    found = {}
+    if (directory / "denoise.json").exists():
+        found["roofline"] = roofline(directory / "denoise.json")
+        found["targets"] = table.targets(load_results(directory / "denoise.json"))
+    if (directory / "scaling.json").exists():
+        found["scaling"] = scaling(directory / "scaling.json", plots)
+    if (directory / "render.json").exists():
+        found["render"] = render(directory / "render.json")
+    if (directory / "peer.md").exists():
+        found["peer"] = (directory / "peer.md").read_text(encoding="utf-8")
+    if (directory / "quality.txt").exists():
+        settings = (directory / "quality.txt").read_text(encoding="utf-8")
+        found["quality"] = quality(directory / "quality", settings)
+    if (directory / "compare" / "results.json").exists():
+        found["compare"] = compare(directory / "compare" / "results.json", plots)
+    return found
+
+
+def main():
+    if len(sys.argv) not in (2, 4):
+        sys.exit(__doc__)
+    directory = pathlib.Path(sys.argv[1])
+    readme = pathlib.Path(sys.argv[2]) if len(sys.argv) == 4 else ROOT / "README.md"
+    plots = pathlib.Path(sys.argv[3]) if len(sys.argv) == 4 else ROOT / "sequences" / "plots"
+    found = sections(directory, plots)
+    try:
+        text = set_sections(readme.read_text(encoding="utf-8"), found)
+    except ValueError as error:
+        sys.exit(f"{readme}: {error}")
+    temporary = readme.with_suffix(".part")
+    temporary.write_text(text, encoding="utf-8")
+    os.replace(temporary, readme)
+    print(f"{readme}: {', '.join(found) or 'nothing to fill in'}")
+
+
+if __name__ == "__main__":
+    main()
