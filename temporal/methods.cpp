@@ -5,8 +5,11 @@
 #include "spatial/atrous_filter.h"
 #include "spatial/cross_bilateral.h"
 #include "spatial/guided_spatial.h"
+#include "temporal/baselines/bmfr.h"
 #include "temporal/baselines/chen2012.h"
+#include "temporal/baselines/hems2010.h"
 #include "temporal/baselines/running_mean.h"
+#include "temporal/baselines/svgf.h"
 #include "temporal/denoiser.h"
 #include "temporal/eigen_denoiser.h"
 #include "temporal/frame_by_frame.h"
@@ -55,6 +58,12 @@ const std::vector<Method>& methods() {
        "after Chen 2012", make<EigenDenoiser>},
       {"chen2012", "incremental PCA of whole images, basis filtering, 120 samples at new pixels",
        "Chen, Lei and Chang 2012", make<Chen2012>},
+      {"svgf", "temporal accumulation, five a-trous passes steered by variance, the first fed back",
+       "Schied et al. 2017", make<Svgf>},
+      {"bmfr", "blockwise regression on normals and positions, between two temporal accumulations",
+       "Koskela et al. 2019", make<Bmfr>},
+      {"hems2010", "weighted sum of 16 reprojected frames, similar colors weigh more",
+       "Herzog, Eisemann, Myszkowski and Seidel 2010", make<Hems2010>},
       {"mean", "reprojected running mean of up to 32 frames", "", make<RunningMean>},
       {"guided", "each frame through the guided filter: normals and depth", "Bauszat et al. 2011",
        [](const DenoiserOptions& options) {

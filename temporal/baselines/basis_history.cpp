@@ -1,13 +1,40 @@
 #include "temporal/baselines/basis_history.h"
 
+#include <bitset>
+#include <cmath>
 #include <utility>
 
 #include "reproject/warp.h"
+#include "temporal/baselines/point_taps.h"
 
 namespace eigenlight {
+namespace {
 
-BasisHistory::BasisHistory(Extent extent, int bases)
-    : surfaces_(extent), bases_(extent, bases), warped_(extent, bases) {}
+bool has_taps(const TapSegment& taps, std::size_t i) {
+  return taps.weight[0][i] + taps.weight[1][i] + taps.weight[2][i] + taps.weight[3][i] > 0.0f;
+}
+
+void drop_empty_taps(const BasisField& from, int count, TapSegment& taps) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+    float sum = 0.0f;
+    bool dropped = false;
+    for (std::size_t t = 0; t < 4; ++t) {
+      float& weight = taps.weight[t][i];
+      if (!(weight > 0.0f)) continue;
+      const bool empty = !(from.age(taps.x[t][i], taps.y[t][i]) > 0.0f);
+      dropped = dropped || empty;
+      if (empty) weight = 0.0f;
+      sum += weight;
+    }
+    if (!dropped || !(sum > 0.0f)) continue;
+    for (auto& weight : taps.weight) weight[i] /= sum;
+  }
+}
+
+}  // namespace
+
+BasisHistory::BasisHistory(Extent extent, int bases, const HistoryOptions& options)
+    : options_(options), surfaces_(extent), bases_(extent, bases), warped_(extent, bases) {}
 
 BasisHistory::Warp BasisHistory::warp(const Frame& frame) {
   EL_CHECK(frame.extent() == extent(), "frame {} is {}x{}, expected {}x{}", frame.index,
@@ -19,15 +46,57 @@ BasisHistory::Warp BasisHistory::warp(const Frame& frame) {
   if (frame.is_static) return {.skipped = static_cast<std::int64_t>(extent().pixels())};
   const PreviousSurface previous = surfaces_.previous();
   for_each_tile(stage_tiles(extent()), [&](const Tile& tile) {
-    TapSegment taps;
     for (int y = tile.y0; y < tile.y1; ++y) {
-      const Tile row{tile.x0, y, tile.x1, y + 1, tile.index};
-      compute_taps(frame, previous, taps_, row, taps);
-      warp_bases(bases_, taps, row, warped_);
+      warp_row(frame, previous, {tile.x0, y, tile.x1, y + 1, tile.index});
     }
   });
   std::swap(bases_, warped_);
   return {};
+}
+
+void BasisHistory::warp_row(const Frame& frame, const PreviousSurface& previous, const Tile& row) {
+  TapSegment taps;
+  compute_taps(frame, previous, taps_, row, taps);
+  const int count = row.x1 - row.x0;
+  std::bitset<kSegment> lost;
+  for (int i = 0; i < count && options_.widens; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    lost[at] = frame.surface.id(row.x0 + i, row.y0) != 0 && !has_taps(taps, at);
+  }
+  if (options_.drops_empty_taps) drop_empty_taps(bases_, count, taps);
+  warp_bases(bases_, taps, row, warped_);
+  for (int i = 0; i < count && lost.any(); ++i) {
+    if (lost[static_cast<std::size_t>(i)]) widen(frame, previous, {row.x0 + i, row.y0});
+  }
+}
+
+void BasisHistory::widen(const Frame& frame, const PreviousSurface& previous, glm::ivec2 pixel) {
+  const auto& normal = frame.surface.normal;
+  const auto [x, y] = std::pair(pixel.x, pixel.y);
+  const SoughtPoint point{
+      frame.surface.id(x, y),
+      {normal[0](x, y), normal[1](x, y), normal[2](x, y)},
+      glm::vec2(pixel) + glm::vec2(frame.motion[0](x, y), frame.motion[1](x, y)),
+      frame.previous_depth(x, y)};
+  const Extent size = extent();
+  // Also false for motion that is not finite.
+  const bool near = point.pixel.x > -2.0f && point.pixel.y > -2.0f &&
+                    point.pixel.x < static_cast<float>(size.width + 1) &&
+                    point.pixel.y < static_cast<float>(size.height + 1);
+  if (!near) return;
+  const TapRule rule(previous, taps_, point);
+  const glm::ivec2 middle(glm::round(point.pixel));
+  float* to = warped_.pixel(x, y);
+  float found = 0.0f;
+  for (int j = middle.y - 1; j <= middle.y + 1; ++j) {
+    for (int i = middle.x - 1; i <= middle.x + 1; ++i) {
+      if (!rule.accepts(i, j) || !(bases_.age(i, j) > 0.0f)) continue;
+      found += 1.0f;
+      const float* from = bases_.pixel(i, j);
+      for (int k = 0; k < bases_.pixel_floats(); ++k) to[k] += from[k];
+    }
+  }
+  for (int k = 0; k < bases_.pixel_floats() && found > 0.0f; ++k) to[k] /= found;
 }
 
 void BasisHistory::save(StateWriter& out) const {

@@ -9,6 +9,15 @@
 
 namespace eigenlight {
 
+/// How a history is carried over.
+struct HistoryOptions {
+  /// Taps of age 0 give nothing, the others share their weight; otherwise they count as zeros.
+  bool drops_empty_taps = false;
+  /// A pixel none of whose four taps shows its surface takes the mean of those of the 3 x 3 pixels
+  /// around that do and are not of age 0 (SVGF, section 4.1).
+  bool widens = false;
+};
+
 /// Bases and ages as the last frame saw them, with the surfaces and the camera of that frame.
 class BasisHistory {
  public:
@@ -18,7 +27,7 @@ class BasisHistory {
   };
 
   /// Throws std::invalid_argument on a bad size or number of bases.
-  BasisHistory(Extent extent, int bases);
+  BasisHistory(Extent extent, int bases, const HistoryOptions& options = {});
 
   /// Carries bases and ages over to `frame` through validated taps. All become 0 at a cut, which is
   /// a frame that does not follow the one kept last. Throws std::invalid_argument if its size
@@ -37,6 +46,10 @@ class BasisHistory {
   void load(StateReader& in);
 
  private:
+  void warp_row(const Frame& frame, const PreviousSurface& previous, const Tile& row);
+  void widen(const Frame& frame, const PreviousSurface& previous, glm::ivec2 pixel);
+
+  HistoryOptions options_;
   TapOptions taps_;
   SurfaceHistory surfaces_;
   BasisField bases_, warped_;

@@ -1,0 +1,60 @@
+// Blockwise multi-order feature regression, as published.
+#pragma once
+
+#include "temporal/baselines/basis_history.h"
+#include "temporal/denoiser.h"
+
+namespace eigenlight {
+
+struct BmfrOptions {
+  float alpha = 0.2f;         ///< (0, 1] least share of a frame in the noisy history
+  float second_alpha = 0.1f;  ///< (0, 1] and of a fit in the history of fits
+  float noise = 0.01f;        ///< (0, 1] amplitude of the noise on features
+
+  void validate() const;  ///< throws std::invalid_argument naming the field
+};
+
+/// Koskela et al. 2019, for comparison, on light over albedo. Per frame, n being the frames of a
+/// pixel's history with this one, at most 255:
+///   1. the noisy light is blended into its history with max(alpha, 1 / n) (section 3.1);
+///   2. the blend is fitted with features block by block (bmfr_fit.h), the blocks being shifted
+///   with
+///      every frame number;
+///   3. the fit is blended into its own history with max(second_alpha, 1 / n) (section 3.5).
+/// The paper's last stage, antialiasing of the tone-mapped picture, is not light and left out. Taps
+/// are those of reproject/taps.h instead of limits on position and normal that the authors set for
+/// each scene. Samples that are not finite take part in nothing: their pixels keep their history,
+/// or show the fit of their block alone.
+class Bmfr final : public Denoiser {
+ public:
+  static constexpr float kMostFrames = 255.0f;
+
+  explicit Bmfr(const DenoiserOptions& options, const BmfrOptions& parts = {});
+
+  [[nodiscard]] const Planes<3>* step(FrameSource& source) override;
+  [[nodiscard]] const Frame& frame() const override { return frame_; }
+  [[nodiscard]] const FrameReport& report() const override { return report_; }
+  [[nodiscard]] const Plane<float>& age() const override { return age_; }
+  void reset() override { history_.reset(); }
+  void save(StateWriter& out) const override;
+  void load(StateReader& in) override;
+
+ private:
+  struct Counts {
+    std::int64_t surface = 0, fresh = 0, non_finite = 0;
+  };
+
+  void accumulate(const Tile& tile, Counts& counts);
+  void blend_fit(const Tile& tile);
+
+  BmfrOptions options_;
+  TileGrid tiles_;
+  Frame frame_;
+  FrameReport report_;
+  BasisHistory history_;  // first basis: noisy light; second: fits
+  Planes<3> light_, output_;
+  Plane<float> age_;
+  std::vector<Counts> counts_;  // per tile
+};
+
+}  // namespace eigenlight

@@ -1,0 +1,268 @@
+#include "temporal/baselines/hems2010.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "temporal/baselines/point_taps.h"
+#include "temporal/stage_clock.h"
+
+namespace eigenlight {
+namespace {
+
+// Changes when the saved bytes do.
+constexpr std::uint32_t kStateVersion = 1;
+constexpr float kPlaneDistance = 0.02f;  // as in spatial/atrous.h
+
+glm::vec3 at(const Planes<3>& planes, glm::ivec2 p) {
+  return {planes[0](p.x, p.y), planes[1](p.x, p.y), planes[2](p.x, p.y)};
+}
+
+// |a - b|^2 over the mean of |a|^2 and |b|^2.
+float difference(const glm::vec3& a, const glm::vec3& b) {
+  const glm::vec3 apart = a - b;
+  const float size = 0.5f * (glm::dot(a, a) + glm::dot(b, b));
+  return size > 0.0f ? glm::dot(apart, apart) / size : 0.0f;
+}
+
+}  // namespace
+
+void HemsOptions::validate() const {
+  EL_CHECK(frames >= 0 && frames <= 16, "frames {}: expected 0 to 16", frames);
+  EL_CHECK(radius >= 0 && radius <= 8, "radius {}: expected 0 to 8 pixels", radius);
+  EL_CHECK(color > 0.0f && color <= 100.0f, "color {}: expected (0, 100]", color);
+  EL_CHECK(decay > 0.0f && decay <= 1.0f, "decay {}: expected (0, 1]", decay);
+  taps.validate();
+}
+
+Hems2010::Hems2010(const DenoiserOptions& options, const HemsOptions& parts)
+    : options_(parts),
+      tiles_(stage_tiles(options.extent)),
+      light_(make_planes<3>(options.extent)),
+      smooth_(make_planes<3>(options.extent)),
+      output_(make_planes<3>(options.extent)),
+      usable_(options.extent),
+      known_(options.extent),
+      age_(options.extent),
+      counts_(static_cast<std::size_t>(tiles_.count())) {
+  parts.validate();
+}
+
+const Planes<3>* Hems2010::step(FrameSource& source) {
+  StageClock clock;
+  if (!source.next(frame_)) return nullptr;
+  report_ = {};
+  report_[Stage::kSource] = clock.lap();
+  const Extent extent = tiles_.extent();
+  EL_CHECK(frame_.extent() == extent, "frame {} is {}x{}, expected {}x{}", frame_.index,
+           frame_.extent().width, frame_.extent().height, extent.width, extent.height);
+  report_.cut = past_.empty() || past_.front().index != frame_.previous_index;
+  if (report_.cut) past_.clear();
+  const auto for_tiles = [&](void (Hems2010::*work)(const Tile&, Counts&)) {
+    for_each_tile(tiles_, [&](const Tile& tile) {
+      (this->*work)(tile, counts_[static_cast<std::size_t>(tile.index)]);
+    });
+  };
+  for_tiles(&Hems2010::take_light);
+  for_tiles(&Hems2010::smooth);
+  report_[Stage::kFilter] = clock.lap();
+  for_tiles(&Hems2010::gather);
+  keep();
+  report_[Stage::kReproject] = clock.lap();
+
+  report_.frame = frame_.index;
+  for (const Counts& counts : counts_) {
+    report_.surface_pixels += counts.surface;
+    report_.new_pixels += counts.fresh;
+    report_.non_finite_pixels += counts.non_finite;
+  }
+  report_.rays = frame_.rays;
+  report_.non_finite_samples = frame_.non_finite_samples;
+  return &output_;
+}
+
+// u, where it may be used.
+void Hems2010::take_light(const Tile& tile, Counts& counts) {
+  const auto& u = frame_.indirect;
+  counts = {};
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    for (int x = tile.x0; x < tile.x1; ++x) {
+      const bool surface = frame_.surface.id(x, y) != 0;
+      const bool finite =
+          std::isfinite(u[0](x, y)) && std::isfinite(u[1](x, y)) && std::isfinite(u[2](x, y));
+      counts.surface += surface ? 1 : 0;
+      counts.non_finite += surface && !finite ? 1 : 0;
+      usable_(x, y) = surface && finite ? 1.0f : 0.0f;
+      for (std::size_t c = 0; c < 3; ++c) light_[c](x, y) = surface && finite ? u[c](x, y) : 0.0f;
+    }
+  }
+}
+
+void Hems2010::smooth(const Tile& tile, Counts&) {
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    for (int x = tile.x0; x < tile.x1; ++x) {
+      for (auto& plane : smooth_) plane(x, y) = 0.0f;
+      known_(x, y) = 0.0f;
+      if (frame_.surface.id(x, y) != 0) smooth_pixel({x, y});
+    }
+  }
+}
+
+void Hems2010::smooth_pixel(glm::ivec2 p) {
+  const Camera& camera = frame_.camera;
+  const auto point = [&](glm::ivec2 q) {
+    return camera.pixel_to_view(glm::vec2(q) + 0.5f) * frame_.surface.depth(q.x, q.y);
+  };
+  const glm::vec3 normal = at(frame_.surface.normal, p), here = point(p);
+  const glm::vec3 across = camera.world_to_view * normal / (kPlaneDistance * here.z);
+  const float spread = 0.5f * static_cast<float>(std::max(options_.radius, 1));
+  glm::vec3 sum(0.0f);
+  float weights = 0.0f;
+  for (int j = -options_.radius; j <= options_.radius; ++j) {
+    for (int i = -options_.radius; i <= options_.radius; ++i) {
+      const glm::ivec2 q = p + glm::ivec2(i, j);
+      if (!usable_.extent().contains(q.x, q.y) || !(usable_(q.x, q.y) > 0.0f)) continue;
+      float weight = std::max(0.0f, glm::dot(normal, at(frame_.surface.normal, q)));
+      for (int k = 0; k < 6; ++k) weight *= weight;  // to the power of 64
+      const float near = static_cast<float>(i * i + j * j) / (2.0f * spread * spread);
+      weight *= std::exp(-near - std::abs(glm::dot(across, point(q) - here)));
+      sum += weight * at(light_, q);
+      weights += weight;
+    }
+  }
+  if (!(weights > 0.0f)) return;
+  for (int c = 0; c < 3; ++c) smooth_[static_cast<std::size_t>(c)](p.x, p.y) = sum[c] / weights;
+  known_(p.x, p.y) = 1.0f;
+}
+
+void Hems2010::gather(const Tile& tile, Counts& counts) {
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    for (int x = tile.x0; x < tile.x1; ++x) {
+      for (auto& plane : output_) plane(x, y) = 0.0f;
+      age_(x, y) = 0.0f;
+      if (frame_.surface.id(x, y) != 0 && !gather_pixel({x, y})) ++counts.fresh;
+    }
+  }
+}
+
+bool Hems2010::gather_pixel(glm::ivec2 p) {
+  const glm::vec3 own = at(smooth_, p);
+  const bool known = known_(p.x, p.y) > 0.0f;
+  glm::vec3 sum = own;
+  float weights = known ? 1.0f : 0.0f, squares = weights, decay = 1.0f;
+  SoughtPoint point{
+      frame_.surface.id(p.x, p.y), at(frame_.surface.normal, p),
+      glm::vec2(p) + glm::vec2(frame_.motion[0](p.x, p.y), frame_.motion[1](p.x, p.y)),
+      frame_.previous_depth(p.x, p.y)};
+  bool seen = false;
+  for (const PastFrame& past : past_) {
+    const PointTaps taps = point_taps({past.camera, past.surface}, options_.taps, point);
+    if (!taps.found()) break;
+    seen = true;
+    decay *= options_.decay;
+    glm::vec3 light(0.0f);
+    glm::vec2 motion(0.0f);
+    float share = 0.0f, strongest = 0.0f;
+    point.depth = 0.0f;
+    for (std::size_t t = 0; t < 4; ++t) {
+      const float weight = taps.weight[t];
+      if (!(weight > 0.0f)) continue;
+      const glm::ivec2 q = taps.tap(t);
+      light += weight * past.known(q.x, q.y) * at(past.light, q);
+      share += weight * past.known(q.x, q.y);
+      motion += weight * glm::vec2(past.motion[0](q.x, q.y), past.motion[1](q.x, q.y));
+      point.depth += weight * past.previous_depth(q.x, q.y);
+      if (weight <= strongest) continue;
+      strongest = weight;
+      point.normal = at(past.surface.normal, q);
+    }
+    point.pixel += motion;
+    if (!(share > 0.0f)) continue;
+    light /= share;
+    const float apart = known ? difference(light, own) : 0.0f;
+    const float weight = decay * std::exp(-apart / (2.0f * options_.color * options_.color));
+    sum += weight * light;
+    weights += weight;
+    squares += weight * weight;
+  }
+  if (weights > 0.0f) {
+    for (int c = 0; c < 3; ++c) output_[static_cast<std::size_t>(c)](p.x, p.y) = sum[c] / weights;
+    age_(p.x, p.y) = weights * weights / squares;
+  }
+  return seen;
+}
+
+// Puts this frame before the others, in the planes of the one that leaves.
+void Hems2010::keep() {
+  if (options_.frames == 0) return;
+  if (past_.size() < static_cast<std::size_t>(options_.frames)) past_.emplace_back();
+  std::rotate(past_.begin(), past_.end() - 1, past_.end());
+  PastFrame& now = past_.front();
+  const Extent extent = tiles_.extent();
+  now.index = frame_.index;
+  now.camera = frame_.camera;
+  const auto copy = [&](const auto& from, auto& to) {
+    ensure_extent(to, extent);
+    to.copy_from(from);
+  };
+  copy(frame_.surface.depth, now.surface.depth);
+  copy(frame_.surface.id, now.surface.id);
+  copy(frame_.previous_depth, now.previous_depth);
+  copy(known_, now.known);
+  for (std::size_t c = 0; c < 3; ++c) {
+    copy(frame_.surface.normal[c], now.surface.normal[c]);
+    copy(smooth_[c], now.light[c]);
+    if (c < 2) copy(frame_.motion[c], now.motion[c]);
+  }
+}
+
+void Hems2010::save(StateWriter& out) const {
+  out.value("hems2010", kStateVersion);
+  out.value("frames", past_.size());
+  for (const PastFrame& past : past_) {
+    out.value("index", past.index);
+    out.value("camera", past.camera);
+    out.plane("depth", past.surface.depth);
+    out.planes("normal", past.surface.normal);
+    out.plane("id", past.surface.id);
+    out.planes("motion", past.motion);
+    out.plane("previous depth", past.previous_depth);
+    out.planes("light", past.light);
+    out.plane("known", past.known);
+  }
+}
+
+void Hems2010::load(StateReader& in) {
+  std::uint32_t version = 0;
+  in.value("hems2010", version);
+  if (version != kStateVersion) {
+    throw std::runtime_error(
+        fmt::format("state of 'hems2010': version {}, expected {}", version, kStateVersion));
+  }
+  std::size_t frames = 0;
+  in.value("frames", frames);
+  if (frames > static_cast<std::size_t>(options_.frames)) {
+    throw std::runtime_error(fmt::format("state of 'hems2010': {} past frames, expected up to {}",
+                                         frames, options_.frames));
+  }
+  past_ = std::vector<PastFrame>(frames);
+  for (PastFrame& past : past_) {
+    in.value("index", past.index);
+    in.value("camera", past.camera);
+    in.plane("depth", past.surface.depth);
+    in.planes("normal", past.surface.normal);
+    in.plane("id", past.surface.id);
+    in.planes("motion", past.motion);
+    in.plane("previous depth", past.previous_depth);
+    in.planes("light", past.light);
+    in.plane("known", past.known);
+    const Extent wanted = tiles_.extent();
+    const Extent found = past.known.extent();
+    if (found != wanted) {
+      throw std::runtime_error(fmt::format("state of 'hems2010': {}x{}, expected {}x{}",
+                                           found.width, found.height, wanted.width, wanted.height));
+    }
+  }
+}
+
+}  // namespace eigenlight

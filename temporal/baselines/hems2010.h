@@ -1,0 +1,81 @@
+// Spatio-temporal upsampling as a filter of full frames.
+#pragma once
+
+#include <vector>
+
+#include "reproject/taps.h"
+#include "temporal/denoiser.h"
+
+namespace eigenlight {
+
+struct HemsOptions {
+  int frames = 16;     ///< [0, 16] past frames
+  int radius = 2;      ///< [0, 8] pixels, of the window in space; 0: none
+  float color = 0.5f;  ///< (0, 100] difference of color, over color, at which the weight is e^-1/2
+  float decay = 1.0f;  ///< (0, 1] factor on the weight for each frame of age
+  TapOptions taps = {};
+
+  void validate() const;  ///< throws std::invalid_argument naming the field
+};
+
+/// Herzog, Eisemann, Myszkowski and Seidel 2010, as Chen 2012 (section 4.2) compares with it: a
+/// weighted sum over the past 16 frames, in which similar colors weigh more, of what a
+/// geometry-aware window makes of each frame:
+///   s(p) = sum_q g(p, q) u(q) / sum_q g(p, q),
+///     g = exp(-|p - q|^2 / (2 (radius / 2)^2)) max(0, N_p . N_q)^64
+///         * exp(-|N_p . (X_q - X_p)| / (0.02 depth_p)),
+///   out(p) = sum_k w_k s_k / sum_k w_k,  k = 0 .. 16 frames ago, w_0 = 1,
+///     w_k = decay^k exp(-|s_k - s_0|^2 / (2 color^2 (|s_k|^2 + |s_0|^2) / 2)).
+/// s_k is read at the point's own place k frames ago: its motion is followed from frame to frame,
+/// and each step has to find the surface by the rule of reproject/taps.h. Every frame is shaded in
+/// full here, as in Chen's comparison; Herzog's frames are sparse, and the window is what fills
+/// them. The form of g is that of spatial/atrous.h, of w that of a bilateral filter: Chen gives
+/// neither.
+///
+/// `age` is (sum w)^2 / sum w^2. Holds 48 bytes a pixel for each past frame: 177 MB at 640 x 360.
+/// Samples that are not finite take part in nothing; where the window is empty for them too and no
+/// past frame knows better, the pixel is 0.
+class Hems2010 final : public Denoiser {
+ public:
+  explicit Hems2010(const DenoiserOptions& options, const HemsOptions& parts = {});
+
+  [[nodiscard]] const Planes<3>* step(FrameSource& source) override;
+  [[nodiscard]] const Frame& frame() const override { return frame_; }
+  [[nodiscard]] const FrameReport& report() const override { return report_; }
+  [[nodiscard]] const Plane<float>& age() const override { return age_; }
+  void reset() override { past_.clear(); }
+  void save(StateWriter& out) const override;
+  void load(StateReader& in) override;
+
+ private:
+  struct Counts {
+    std::int64_t surface = 0, fresh = 0, non_finite = 0;
+  };
+  struct PastFrame {
+    int index = 0;
+    Camera camera;
+    GBuffer surface;  // depth, normal and id
+    Planes<2> motion;
+    Plane<float> previous_depth;
+    Planes<3> light;     // s
+    Plane<float> known;  // 1 where there is such, else 0
+  };
+
+  void take_light(const Tile& tile, Counts& counts);
+  void smooth(const Tile& tile, Counts& counts);
+  void smooth_pixel(glm::ivec2 p);
+  void gather(const Tile& tile, Counts& counts);
+  [[nodiscard]] bool gather_pixel(glm::ivec2 p);  // whether any past frame shows the point
+  void keep();
+
+  HemsOptions options_;
+  TileGrid tiles_;
+  Frame frame_;
+  FrameReport report_;
+  std::vector<PastFrame> past_;  // the latest first
+  Planes<3> light_, smooth_, output_;
+  Plane<float> usable_, known_, age_;
+  std::vector<Counts> counts_;  // per tile
+};
+
+}  // namespace eigenlight

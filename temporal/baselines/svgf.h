@@ -1,0 +1,69 @@
+// Spatiotemporal variance-guided filtering, as published.
+#pragma once
+
+#include "temporal/baselines/basis_history.h"
+#include "temporal/baselines/svgf_filter.h"
+#include "temporal/denoiser.h"
+
+namespace eigenlight {
+
+struct SvgfOptions {
+  float alpha = 0.2f;          ///< (0, 1] least share of a frame in the history of its color
+  float moments_alpha = 0.2f;  ///< (0, 1] and of its moments
+  int passes = 5;              ///< [1, 6] a-trous passes
+  int feedback = 1;            ///< [0, passes] the pass whose result becomes history; 0: none
+  SvgfWeights weights = {};
+
+  void validate() const;  ///< throws std::invalid_argument naming the field
+};
+
+/// Schied et al. 2017, for comparison, on light over albedo. Per frame, n being the frames of a
+/// pixel's history with this one:
+///   1. color and moments of luminance are carried over through taps that show the same surface, or
+///      their 3 x 3 surroundings where none does, and blended with
+///      max(alpha, 1 / n) of this frame (section 4.1; 1 / n is of the authors' implementation);
+///   2. the variance of luminance is m_2 - m_1^2; below 4 frames moments and color come from a 7 x
+///   7
+///      cross-bilateral window, the variance times 4 / n (section 4.2; the factor and the color are
+///      of the authors' implementation);
+///   3. five a-trous passes steered by that variance; the color after the first becomes history
+///      (section 4.3, svgf_filter.h).
+/// n saturates at 32 frames. Samples that are not finite take part in nothing: their pixels keep
+/// their history, or are filled from the window; where that is empty too they are 0.
+class Svgf final : public Denoiser {
+ public:
+  static constexpr float kMostFrames = 32.0f;
+  static constexpr float kYoung = 4.0f;  ///< frames: from then on history tells the variance
+
+  explicit Svgf(const DenoiserOptions& options, const SvgfOptions& parts = {});
+
+  [[nodiscard]] const Planes<3>* step(FrameSource& source) override;
+  [[nodiscard]] const Frame& frame() const override { return frame_; }
+  [[nodiscard]] const FrameReport& report() const override { return report_; }
+  [[nodiscard]] const Plane<float>& age() const override { return age_; }
+  void reset() override { history_.reset(); }
+  void save(StateWriter& out) const override;
+  void load(StateReader& in) override;
+
+ private:
+  struct Counts {
+    std::int64_t surface = 0, fresh = 0, non_finite = 0;
+  };
+
+  void accumulate(const Tile& tile, Counts& counts);
+  void estimate(const Tile& tile);
+  void estimate_from_window(glm::ivec2 p);
+  void filter();
+  void feed_back(const Tile& tile);
+
+  SvgfOptions options_;
+  TileGrid tiles_;
+  Frame frame_;
+  FrameReport report_;
+  BasisHistory history_;  // first basis: color; second: m_1, m_2, 0
+  SvgfImage image_, scratch_;
+  Plane<float> age_, known_;
+  std::vector<Counts> counts_;  // per tile
+};
+
+}  // namespace eigenlight
