@@ -12,7 +12,6 @@ namespace {
 
 // Changes when the saved bytes do.
 constexpr std::uint32_t kStateVersion = 1;
-constexpr float kPlaneDistance = 0.02f;  // as in spatial/atrous.h
 
 glm::vec3 at(const Planes<3>& planes, glm::ivec2 p) {
   return {planes[0](p.x, p.y), planes[1](p.x, p.y), planes[2](p.x, p.y)};
@@ -46,6 +45,9 @@ Hems2010::Hems2010(const DenoiserOptions& options, const HemsOptions& parts)
       age_(options.extent),
       counts_(static_cast<std::size_t>(tiles_.count())) {
   parts.validate();
+  // Light is over albedo: 10 is further apart than any two of them.
+  const CrossBilateralOptions window{.radius = parts.radius, .sigma_albedo = 10.0f};
+  if (parts.radius > 0) window_ = std::make_unique<CrossBilateral>(options.extent, window);
 }
 
 const Planes<3>* Hems2010::step(FrameSource& source) {
@@ -64,7 +66,7 @@ const Planes<3>* Hems2010::step(FrameSource& source) {
     });
   };
   for_tiles(&Hems2010::take_light);
-  for_tiles(&Hems2010::smooth);
+  smooth();
   report_[Stage::kFilter] = clock.lap();
   for_tiles(&Hems2010::gather);
   keep();
@@ -98,41 +100,22 @@ void Hems2010::take_light(const Tile& tile, Counts& counts) {
   }
 }
 
-void Hems2010::smooth(const Tile& tile, Counts&) {
-  for (int y = tile.y0; y < tile.y1; ++y) {
-    for (int x = tile.x0; x < tile.x1; ++x) {
-      for (auto& plane : smooth_) plane(x, y) = 0.0f;
-      known_(x, y) = 0.0f;
-      if (frame_.surface.id(x, y) != 0) smooth_pixel({x, y});
-    }
+void Hems2010::smooth() {
+  if (!window_) {
+    copy_planes(light_, smooth_);
+    known_.copy_from(usable_);
+    return;
   }
-}
-
-void Hems2010::smooth_pixel(glm::ivec2 p) {
-  const Camera& camera = frame_.camera;
-  const auto point = [&](glm::ivec2 q) {
-    return camera.pixel_to_view(glm::vec2(q) + 0.5f) * frame_.surface.depth(q.x, q.y);
-  };
-  const glm::vec3 normal = at(frame_.surface.normal, p), here = point(p);
-  const glm::vec3 across = camera.world_to_view * normal / (kPlaneDistance * here.z);
-  const float spread = 0.5f * static_cast<float>(std::max(options_.radius, 1));
-  glm::vec3 sum(0.0f);
-  float weights = 0.0f;
-  for (int j = -options_.radius; j <= options_.radius; ++j) {
-    for (int i = -options_.radius; i <= options_.radius; ++i) {
-      const glm::ivec2 q = p + glm::ivec2(i, j);
-      if (!usable_.extent().contains(q.x, q.y) || !(usable_(q.x, q.y) > 0.0f)) continue;
-      float weight = std::max(0.0f, glm::dot(normal, at(frame_.surface.normal, q)));
-      for (int k = 0; k < 6; ++k) weight *= weight;  // to the power of 64
-      const float near = static_cast<float>(i * i + j * j) / (2.0f * spread * spread);
-      weight *= std::exp(-near - std::abs(glm::dot(across, point(q) - here)));
-      sum += weight * at(light_, q);
-      weights += weight;
+  window_->process({frame_, light_, usable_}, smooth_);
+  for_each_tile(tiles_, [&](const Tile& tile) {
+    for (int y = tile.y0; y < tile.y1; ++y) {
+      for (int x = tile.x0; x < tile.x1; ++x) {
+        // Where nothing usable is near the filter gives 0.
+        const bool filled = usable_(x, y) > 0.0f || at(smooth_, {x, y}) != glm::vec3(0.0f);
+        known_(x, y) = filled ? 1.0f : 0.0f;
+      }
     }
-  }
-  if (!(weights > 0.0f)) return;
-  for (int c = 0; c < 3; ++c) smooth_[static_cast<std::size_t>(c)](p.x, p.y) = sum[c] / weights;
-  known_(p.x, p.y) = 1.0f;
+  });
 }
 
 void Hems2010::gather(const Tile& tile, Counts& counts) {

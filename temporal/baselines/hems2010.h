@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "reproject/taps.h"
+#include "spatial/cross_bilateral.h"
 #include "temporal/denoiser.h"
 
 namespace eigenlight {
@@ -21,16 +22,13 @@ struct HemsOptions {
 /// Herzog, Eisemann, Myszkowski and Seidel 2010, as Chen 2012 (section 4.2) compares with it: a
 /// weighted sum over the past 16 frames, in which similar colors weigh more, of what a
 /// geometry-aware window makes of each frame:
-///   s(p) = sum_q g(p, q) u(q) / sum_q g(p, q),
-///     g = exp(-|p - q|^2 / (2 (radius / 2)^2)) max(0, N_p . N_q)^64
-///         * exp(-|N_p . (X_q - X_p)| / (0.02 depth_p)),
+///   s = the cross bilateral filter of u (spatial/cross_bilateral.h), by normals and depth alone,
 ///   out(p) = sum_k w_k s_k / sum_k w_k,  k = 0 .. 16 frames ago, w_0 = 1,
 ///     w_k = decay^k exp(-|s_k - s_0|^2 / (2 color^2 (|s_k|^2 + |s_0|^2) / 2)).
 /// s_k is read at the point's own place k frames ago: its motion is followed from frame to frame,
 /// and each step has to find the surface by the rule of reproject/taps.h. Every frame is shaded in
 /// full here, as in Chen's comparison; Herzog's frames are sparse, and the window is what fills
-/// them. The form of g is that of spatial/atrous.h, of w that of a bilateral filter: Chen gives
-/// neither.
+/// them. Chen gives the form of neither weight; w is that of a bilateral filter.
 ///
 /// `age` is (sum w)^2 / sum w^2. Holds 48 bytes a pixel for each past frame: 177 MB at 640 x 360.
 /// Samples that are not finite take part in nothing; where the window is empty for them too and no
@@ -62,14 +60,14 @@ class Hems2010 final : public Denoiser {
   };
 
   void take_light(const Tile& tile, Counts& counts);
-  void smooth(const Tile& tile, Counts& counts);
-  void smooth_pixel(glm::ivec2 p);
+  void smooth();
   void gather(const Tile& tile, Counts& counts);
   [[nodiscard]] bool gather_pixel(glm::ivec2 p);  // whether any past frame shows the point
   void keep();
 
   HemsOptions options_;
   TileGrid tiles_;
+  std::unique_ptr<CrossBilateral> window_;  // null for radius 0
   Frame frame_;
   FrameReport report_;
   std::vector<PastFrame> past_;  // the latest first
