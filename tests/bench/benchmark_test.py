@@ -140,19 +140,29 @@ class ReportTest(FolderTest):
 
         results = {
             "settings": {"contenders": [{"label": "ours"}, {"label": "mean"}, {"label": "OIDN"}],
-                         "width": 320, "height": 180, "frames": "40-43", "spp": [1, 2]},
-            "scenes": [{"name": "atrium, lights", "equal_time": {"ms": 20, "relmse": {"ours": 0.01, "mean": 0.05}},
+                         "ours": "ours", "width": 320, "height": 180, "frames": "40-43",
+                         "spp": [1, 2]},
+            "scenes": [{"name": "atrium, lights",
                         "cells": [cell("ours", 10, 0.02), cell("ours", 20, 0.01),
-                                  cell("mean", 9, 0.06), cell("mean", 19, -0.001)]}]}
+                                  cell("mean", 5, 0.16), cell("mean", 80, 0.01),
+                                  cell("OIDN", 90, 0.01), cell("OIDN", 95, -0.001)]}]}
         path = self.folder / "results.json"
         path.write_text(json.dumps(results))
         text = report.compare(path, self.folder / "plots")
-        self.assertIn("| atrium, lights | 20 | **0.01** | 0.05 | - |", text)
+        # Half of the way from 5 to 80 ms by logarithms; OIDN is nowhere near.
+        self.assertIn("| atrium, lights | 20 | **0.01** | 0.04 | - |", text)
         svg = (self.folder / "plots" / "error-time-atrium-lights.svg").read_text()
         root = xml.etree.ElementTree.fromstring(svg)
         # A figure below zero is noise of the references: it has no place on the plot.
         self.assertEqual([len(line.get("points").split()) for line in root.iter(f"{SVG}polyline")],
-                         [2, 1])
+                         [2, 2, 1])
+
+    def test_errors_are_read_off_the_curve_only(self):
+        points = [(40.0, 0.1), (10.0, 0.4)]
+        self.assertAlmostEqual(report.error_at(points, 20.0), 0.2)
+        self.assertAlmostEqual(report.error_at(points, 10.0), 0.4)
+        self.assertIsNone(report.error_at(points, 9.9))
+        self.assertIsNone(report.error_at(points, 40.1))
 
     def test_quality_is_a_table_of_methods_by_scenes(self):
         figures = {"atrium": {"noisy": {"relmse": 1.0}, "eigenlight": {"relmse": 0.01}},

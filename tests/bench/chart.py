@@ -7,6 +7,7 @@ import xml.sax.saxutils
 
 WIDTH, HEIGHT = 760, 440
 LEFT, RIGHT, TOP, BOTTOM = 78, 170, 46, 58
+ENOUGH_TICKS = 4
 
 # Okabe and Ito 2008: told apart by all kinds of color vision, on light and on dark.
 COLORS = ["#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c8c8c", "#b09500"]
@@ -47,13 +48,17 @@ class Axis:
     def ticks(self):
         if not self.is_log:
             step = 10.0 ** math.floor(math.log10(self.last - self.first))
-            while (self.last - self.first) / step < 4:
+            while (self.last - self.first) / step < ENOUGH_TICKS:
                 step /= 2
             return [i * step for i in range(int(self.last / step) + 1)]
         decades = range(math.floor(math.log10(self.first)), math.ceil(math.log10(self.last)) + 1)
-        steps = (1, 2, 5) if len(decades) <= 4 else (1,)
-        found = [s * 10.0**d for d in decades for s in steps]
-        return [v for v in found if self.first <= v <= self.last]
+        found = []
+        for steps in ((1,), (1, 2, 5), range(1, 10)):
+            values = [s * 10.0**d for d in decades for s in steps]
+            found = [v for v in values if self.first <= v <= self.last]
+            if len(found) >= ENOUGH_TICKS:
+                break
+        return found
 
 
 def text(x, y, words, attributes=""):

@@ -5,6 +5,7 @@ Each table goes between the markers `<!-- benchmark:NAME -->` and `<!-- /benchma
 plots go to the folder PLOTS. Steps without a result in DIRECTORY leave their table as it is.
 """
 
+import math
 import os
 import pathlib
 import re
@@ -20,7 +21,7 @@ sys.path.insert(0, str(ROOT / "sequences"))
 from quality_table import log_figures  # noqa: E402
 
 SCENE_NAMES = {"lights": "atrium, lights", "objects": "atrium, objects", "sponza": "crytek-sponza"}
-METHOD_COLORS = ["eigenlight", "OIDN", "svgf", "chen2012", "mean", "guided", "noisy"]
+METHODS = ["eigenlight", "OIDN", "mean", "svgf", "chen2012", "noisy"]  # take colors first
 
 
 def set_sections(text, sections):
@@ -36,8 +37,10 @@ def set_sections(text, sections):
 
 
 def roofline(path):
-    results = load_results(path)
-    return table.roofline([r for r in results if r.threads == 1], [720], [5])
+    """At 1280x720, or at all sizes of a run without that one."""
+    results = [r for r in load_results(path) if r.threads == 1]
+    heights = [720] if any(r.height == 720 for r in results) else None
+    return table.roofline(results, heights, [5])
 
 
 def scaling(path, plots):
@@ -47,14 +50,13 @@ def scaling(path, plots):
     chart = Chart("CPU time against pixels", "megapixels", "CPU ms a frame")
     chart.add("eigenlight, K = 3", pixels)
     chart.write(plots / "scaling-pixels.svg")
-    radii = [(r.value, r["ns_per_pixel"]) for r in results if r.stage == "guided_radius"]
-    chart = Chart("Guided filter against its radius", "radius, pixels", "CPU ns a pixel",
-                  is_log=(False, False))
-    chart.add("guided filter", radii)
+    chart = Chart("Filters against their radius", "radius, pixels", "CPU ns a pixel")
+    for stage, name in (("guided_radius", "guided filter"), ("bilateral_radius", "cross bilateral")):
+        chart.add(name, [(r.value, r["ns_per_pixel"]) for r in results if r.stage == stage])
     chart.write(plots / "scaling-radius.svg")
     images = "".join(f"![{alt}](sequences/plots/{name}.svg)\n" for name, alt in (
         ("scaling-pixels", "CPU time of the loop against pixels"),
-        ("scaling-radius", "CPU time of the guided filter against its radius")))
+        ("scaling-radius", "CPU time of the guided and the cross bilateral filter against radius")))
     return table.scaling(results) + "\n\n" + images
 
 
@@ -85,7 +87,7 @@ def quality_pivot(figures, metric):
 
 def quality(directory, settings):
     figures = quality_figures(directory)
-    lines = [settings, "", "relMSE, and as a multiple of the noisy input:", "",
+    lines = [settings.strip(), "", "relMSE, and as a multiple of the noisy input:", "",
              quality_pivot(figures, "relmse"), "",
              "Temporal error, and as a multiple of the noisy input:", "",
              quality_pivot(figures, "temporal_error"), ""]
@@ -105,11 +107,33 @@ def curves(scene):
     return found
 
 
+def error_at(points, ms):
+    """The error at `ms` on straight lines between points in log-log; None beyond them."""
+    points = sorted(points)
+    for (t0, e0), (t1, e1) in zip(points, points[1:]):
+        if t0 <= ms <= t1 and t0 < t1:
+            share = math.log(ms / t0) / math.log(t1 / t0)
+            return math.exp((1.0 - share) * math.log(e0) + share * math.log(e1))
+    return None
+
+
+def at_equal_time(scene, ours):
+    """Our time in the middle of our curve, which others can reach from both sides, and all errors."""
+    found = curves(scene)
+    points = sorted(found[ours])
+    ms = points[len(points) // 2][0]
+    errors = {label: error_at(of_label, ms) for label, of_label in found.items()}
+    return ms, {label: error for label, error in errors.items() if error is not None}
+
+
 def compare(path, plots):
     """A plot of error against time for each scene, and errors at equal time."""
     results = load_json(path)
-    colors = {name: COLORS[i] for i, name in enumerate(METHOD_COLORS)}
-    parts, rows, labels = [], [], [c["label"] for c in results["settings"]["contenders"]]
+    labels = [c["label"] for c in results["settings"]["contenders"]]
+    known = [name for name in METHODS if name in labels]
+    order = known + [label for label in labels if label not in known]
+    colors = {label: COLORS[i % len(COLORS)] for i, label in enumerate(order)}
+    parts, rows = [], []
     for scene in results["scenes"]:
         name = re.sub(r"[^\w-]+", "-", scene["name"])
         chart = Chart(f"{scene['name']}: error against time", "CPU ms a frame, rendering + denoising",
@@ -118,12 +142,12 @@ def compare(path, plots):
             chart.add(label, points)
         chart.write(plots / f"error-time-{name}.svg", colors)
         parts.append(f"![{scene['name']}: relMSE against CPU time](sequences/plots/error-time-{name}.svg)")
-        errors = scene["equal_time"]["relmse"]
-        best = min(errors.values()) if errors else None
+        ms, errors = at_equal_time(scene, results["settings"]["ours"])
+        best = min(errors.values(), default=None)
         cells = [f"{errors[l]:.3g}" if l in errors else "-" for l in labels]
         cells = [f"**{c}**" if errors.get(l) == best and l in errors else c
                  for l, c in zip(labels, cells)]
-        rows.append([scene["name"], f"{scene['equal_time']['ms']:.0f}"] + cells)
+        rows.append([scene["name"], f"{ms:.0f}"] + cells)
     settings = results["settings"]
     head = (f"{settings['width']}x{settings['height']}, frames {settings['frames']}, "
             f"{', '.join(map(str, settings['spp']))} samples a pixel; relMSE at the same total CPU "
@@ -134,10 +158,14 @@ def compare(path, plots):
 def render(path):
     rows = []
     for entry in load_json(path)["benchmarks"]:
-        if not entry.get("error_occurred"):
-            name = entry["name"].split("/")[0].removeprefix("indirect_")
-            rows.append([name, f"{entry['rays'] * 1e-6:.2f}", f"{entry['rays_per_sample']:.2f}"])
-    return table.markdown(["scene", "million rays/s, two cores", "rays/sample"], rows)
+        if entry.get("error_occurred"):
+            continue
+        name = entry["name"].split("/")[0].removeprefix("indirect_")
+        of_cpu = entry["rays"] * entry["real_time"] / entry["cpu_time"]
+        rows.append([name, f"{of_cpu * 1e-6:.2f}", f"{entry['rays'] * 1e-6:.2f}",
+                     f"{entry['rays_per_sample']:.2f}"])
+    head = ["scene", "million rays per CPU second", "per second, all threads", "rays/sample"]
+    return table.markdown(head, rows)
 
 
 def sections(directory, plots):

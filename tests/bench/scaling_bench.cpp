@@ -1,7 +1,8 @@
 // How CPU time grows: of the loop with pixels and with bases K, of the guided filter with its
 // radius. Arguments and counters as in denoise_bench.cpp; guided_radius has `radius` in place of
 // `bases`.
-#include "spatial/guided_filter.h"
+#include "spatial/cross_bilateral.h"
+#include "spatial/guided_spatial.h"
 #include "tests/bench/denoiser_loop.h"
 #include "tests/bench/filter_work.h"
 #include "tests/bench/register.h"
@@ -19,21 +20,29 @@ void loop(benchmark::State& state) {
   });
 }
 
-void guided_radius(benchmark::State& state) {
+// One filter at the radius in the place of bases.
+template <typename Filter, typename Options>
+void filter_radius(benchmark::State& state, Options options, const Work& work) {
   const Setting setting(state);
   const Frame& frame = setting.lap().frames[1];
-  GuidedFilter filter(setting.extent, {.radius = static_cast<int>(state.range(1))});
+  options.radius = static_cast<int>(state.range(1));
+  Filter filter(setting.extent, options);
   Plane<float> weight(setting.extent);
-  Plane<std::uint8_t> wanted(setting.extent);
   Planes<3> out = make_planes<3>(setting.extent);
   weight.fill(1.0f);
-  wanted.fill(1);
-  const auto run = [&] {
-    benchmark::DoNotOptimize(filter.process({frame, frame.indirect, weight, wanted}, out));
-  };
+  const auto run = [&] { filter.process({frame, frame.indirect, weight}, out); };
   run();
   if (!is_sound(out, setting.extent)) return state.SkipWithError("nothing filtered");
-  measure(state, setting.extent, kGuidedWork, timed(run));
+  measure(state, setting.extent, work, timed(run));
+}
+
+void guided_radius(benchmark::State& state) {
+  filter_radius<GuidedSpatial>(state, GuidedOptions{}, kGuidedWork);
+}
+
+// Reads albedo where the guided filter does not.
+void bilateral_radius(benchmark::State& state) {
+  filter_radius<CrossBilateral>(state, CrossBilateralOptions{}, {12 * kFloat, 3 * kFloat});
 }
 
 void over_pixels(benchmark::internal::Benchmark* bench) {
@@ -51,6 +60,7 @@ void over_radii(benchmark::internal::Benchmark* bench) {
 BENCHMARK(loop)->Name("loop_pixels")->Apply(over_pixels);
 BENCHMARK(loop)->Name("loop_bases")->Apply(over_bases);
 BENCHMARK(guided_radius)->Apply(over_radii);
+BENCHMARK(bilateral_radius)->Apply(over_radii);
 
 }  // namespace
 }  // namespace eigenlight

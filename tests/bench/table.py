@@ -7,7 +7,7 @@ table.py roofline RESULT.json [--heights 720] [--bases 5]
 table.py targets RESULT.json
     CPU time of each stage by instruction set
 table.py scaling RESULT.json
-    of bench_scaling: the loop by pixels and by bases, the guided filter by radius
+    of bench_scaling: the loop by pixels and by bases, filters by radius
 table.py peer RESULT.json --peer PROGRAM
     the denoiser beside OIDN balanced (the program oidn_peer) on frames of the same sizes
 
@@ -90,6 +90,19 @@ def scaling_table(results, stage, column, label):
     return markdown(head, rows)
 
 
+def radius_table(results, label):
+    """Guided and bilateral filter side by side."""
+    times = {}
+    for result in medians(results):
+        if result.kind == "radius":
+            times.setdefault(result.value, {})[result.stage] = result["ns_per_pixel"]
+    rows = [
+        [str(radius)] + [f"{found[s]:.0f}" for s in ("guided_radius", "bilateral_radius")]
+        for radius, found in sorted(times.items())
+    ]
+    return markdown([label, "guided filter, ns/pixel", "cross bilateral, ns/pixel"], rows)
+
+
 def scaling(results):
     bases = {r.value for r in results if r.stage == "loop_pixels"}
     size = next(r.size for r in results if r.stage == "loop_bases")
@@ -97,8 +110,7 @@ def scaling(results):
         scaling_table(results, "loop_pixels", lambda r: r.size,
                       f"loop, K = {', '.join(map(str, sorted(bases)))}: size"),
         scaling_table(results, "loop_bases", lambda r: str(r.value), f"loop, {size}: K"),
-        scaling_table(results, "guided_radius", lambda r: str(r.value),
-                      f"guided filter, {size}: radius"),
+        radius_table(results, f"{size}: radius"),
     ])
 
 
