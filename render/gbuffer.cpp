@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "render/light_shapes.h"
+#include "render/sample_mean.h"
 
 namespace eigenlight {
 namespace {
@@ -13,24 +14,20 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 // Everything that one pixel gets.
 struct Pixel {
-  float depth = kInfinity;
-  glm::vec3 normal{0.0f}, albedo{0.0f}, position{0.0f}, emission{0.0f};
+  EyeHit eye;
   std::uint32_t id = 0;
   glm::vec3 before{0.0f};  // in the previous camera's view space; the direction, for the sky
 };
 
-void store(const glm::vec3& value, int x, int y, Planes<3>& planes) {
-  for (int c = 0; c < 3; ++c) planes[static_cast<std::size_t>(c)](x, y) = value[c];
-}
-
 void store(const Pixel& pixel, const Camera& previous, glm::ivec2 at, Frame& frame) {
   const auto [x, y] = std::pair(at.x, at.y);
-  frame.surface.depth(x, y) = pixel.depth;
+  const EyeHit& eye = pixel.eye;
+  frame.surface.depth(x, y) = eye.depth;
   frame.surface.id(x, y) = pixel.id;
-  store(pixel.normal, x, y, frame.surface.normal);
-  store(pixel.albedo, x, y, frame.surface.albedo);
-  store(pixel.position, x, y, frame.position);
-  store(pixel.emission, x, y, frame.emission);
+  store_pixel(eye.normal, x, y, frame.surface.normal);
+  store_pixel(eye.albedo, x, y, frame.surface.albedo);
+  store_pixel(eye.position, x, y, frame.position);
+  store_pixel(eye.emission, x, y, frame.emission);
   const bool seen = pixel.before.z > 0.0f;
   const glm::vec2 center(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
   const glm::vec2 motion =
@@ -55,71 +52,84 @@ glm::vec3 previous_point(const SphereLight& now, const SphereLight& before,
   return before.center + (point - now.center) * (before.radius / now.radius);
 }
 
-// Shapes are told apart by their place in Lights; if that list has changed, they stand still.
-void fill_shape(const World& world, const PreviousView& previous, const ShapeHit& hit,
-                Pixel& pixel) {
-  const Lights& now = world.lights.lights();
-  const Lights& then = previous.lights;
-  glm::vec3 before = pixel.position;
-  if (hit.shape < now.rects.size()) {
-    const AreaRect& rect = now.rects[hit.shape];
-    pixel.normal = shape_normal(rect, pixel.position);
-    if (then.rects.size() == now.rects.size()) {
-      before = previous_point(rect, then.rects[hit.shape], pixel.position);
-    }
-  } else {
-    const std::size_t index = hit.shape - now.rects.size();
-    const SphereLight& sphere = now.spheres[index];
-    pixel.normal = shape_normal(sphere, pixel.position);
-    if (then.spheres.size() == now.spheres.size()) {
-      before = previous_point(sphere, then.spheres[index], pixel.position);
-    }
-  }
-  pixel.emission = hit.radiance;
-  pixel.id = static_cast<std::uint32_t>(world.geometry.transforms().size()) + 1U + hit.shape;
-  pixel.before = previous.camera.to_view(before);
+glm::vec3 shape_normal_at(const Lights& lights, std::uint32_t shape, const glm::vec3& point) {
+  if (shape < lights.rects.size()) return shape_normal(lights.rects[shape], point);
+  return shape_normal(lights.spheres[shape - lights.rects.size()], point);
 }
 
-void fill_surface(const World& world, const PreviousView& previous, const Ray& ray, const Hit& hit,
-                  Pixel& pixel, const SurfacePoint& point) {
-  pixel.normal = point.normal;
-  pixel.albedo = glm::clamp(point.albedo, 0.0f, 1.0f);
-  pixel.position = point.position;
-  pixel.emission = world.lights.emitted(world.surfaces.emission(hit), ray.direction);
-  pixel.id = hit.instance + 1U;
-  pixel.before =
-      previous.camera.to_view(world.surfaces.position(hit, previous.poses[hit.instance]));
+// Shapes are told apart by their place in Lights; if that list has changed, they stand still.
+glm::vec3 previous_point(const Lights& now, const Lights& then, const EyeHit& eye) {
+  const std::uint32_t shape = eye.shape.shape;
+  if (shape < now.rects.size()) {
+    if (then.rects.size() != now.rects.size()) return eye.position;
+    return previous_point(now.rects[shape], then.rects[shape], eye.position);
+  }
+  if (then.spheres.size() != now.spheres.size()) return eye.position;
+  const std::size_t index = shape - now.rects.size();
+  return previous_point(now.spheres[index], then.spheres[index], eye.position);
+}
+
+// Who it is, and where it was.
+Pixel identify(const World& world, const PreviousView& previous, const EyeHit& eye) {
+  Pixel pixel{eye};
+  const Camera& camera = previous.camera;
+  switch (eye.guide.kind) {
+    case GuideHit::Kind::kSky:
+      pixel.before = camera.world_to_view * eye.direction;
+      break;
+    case GuideHit::Kind::kShape:
+      pixel.id =
+          static_cast<std::uint32_t>(world.geometry.transforms().size()) + 1U + eye.shape.shape;
+      pixel.before = camera.to_view(previous_point(world.lights.lights(), previous.lights, eye));
+      break;
+    case GuideHit::Kind::kSurface:
+      pixel.id = eye.hit.instance + 1U;
+      pixel.before =
+          camera.to_view(world.surfaces.position(eye.hit, previous.poses[eye.hit.instance]));
+      break;
+  }
+  return pixel;
 }
 
 }  // namespace
 
+EyeHit trace_eye(const World& world, const Camera& camera, const glm::vec2& pixel, float spread) {
+  const glm::mat3 view_to_world = glm::transpose(camera.world_to_view);
+  Ray ray{camera.eye, glm::normalize(view_to_world * camera.pixel_to_view(pixel))};
+  EyeHit eye;
+  eye.direction = ray.direction;
+  const std::optional<Hit> hit = world.geometry.intersect(ray);
+  if (hit) ray.t_max = hit->t;
+  if (const std::optional<ShapeHit> shape = world.lights.intersect(ray)) {
+    eye.guide.kind = GuideHit::Kind::kShape;
+    eye.shape = *shape;
+    eye.position = ray.origin + shape->t * ray.direction;
+    eye.normal = shape_normal_at(world.lights.lights(), shape->shape, eye.position);
+    eye.emission = shape->radiance;
+  } else if (hit) {
+    eye.guide = {GuideHit::Kind::kSurface, world.surfaces.guide_point(ray, *hit, spread)};
+    eye.hit = *hit;
+    eye.position = eye.guide.point.position;
+    eye.normal = eye.guide.point.normal;
+    eye.albedo = glm::clamp(eye.guide.point.albedo, 0.0f, 1.0f);
+    eye.emission = world.lights.emitted(world.surfaces.emission(*hit), ray.direction);
+  } else {
+    eye.emission = world.lights.escaped(ray.direction);
+    return eye;
+  }
+  eye.depth = camera.to_view(eye.position).z;
+  return eye;
+}
+
 std::int64_t trace_guides(const World& world, const PreviousView& previous, const Tile& tile,
                           Frame& frame, Plane<GuideHit>& hits) {
-  const Camera& camera = frame.camera;
-  const glm::mat3 view_to_world = glm::transpose(camera.world_to_view);
-  const float spread = 1.0f / camera.focal;
+  const float spread = 1.0f / frame.camera.focal;
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0; x < tile.x1; ++x) {
       const glm::vec2 center(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
-      Ray ray{camera.eye, glm::normalize(view_to_world * camera.pixel_to_view(center))};
-      Pixel pixel;
-      GuideHit& guide = hits(x, y);
-      guide = {};
-      const std::optional<Hit> hit = world.geometry.intersect(ray);
-      if (hit) ray.t_max = hit->t;
-      if (const std::optional<ShapeHit> shape = world.lights.intersect(ray)) {
-        guide.kind = GuideHit::Kind::kShape;
-        pixel.position = ray.origin + shape->t * ray.direction;
-        fill_shape(world, previous, *shape, pixel);
-      } else if (hit) {
-        guide = {GuideHit::Kind::kSurface, world.surfaces.guide_point(ray, *hit, spread)};
-        fill_surface(world, previous, ray, *hit, pixel, guide.point);
-      } else {
-        pixel.emission = world.lights.escaped(ray.direction);
-        pixel.before = previous.camera.world_to_view * ray.direction;
-      }
-      if (pixel.id != 0) pixel.depth = camera.to_view(pixel.position).z;
-      store(pixel, previous.camera, {x, y}, frame);
+      const EyeHit eye = trace_eye(world, frame.camera, center, spread);
+      hits(x, y) = eye.guide;
+      store(identify(world, previous, eye), previous.camera, {x, y}, frame);
     }
   }
   return tile.pixels();

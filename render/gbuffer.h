@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <limits>
 #include <span>
 
 #include "frame/frame.h"
@@ -17,6 +18,22 @@ struct GuideHit {
   Kind kind = Kind::kSky;
   SurfacePoint point;
 };
+
+/// What a ray from the eye meets: all of a point of the picture but the light that arrives there.
+struct EyeHit {
+  GuideHit guide;
+  float depth = std::numeric_limits<float>::infinity();  ///< along the view axis
+  glm::vec3 direction{0.0f};                             ///< of the ray, unit
+  glm::vec3 position{0.0f}, normal{0.0f}, albedo{0.0f};  ///< as in GBuffer; 0 without surface
+  glm::vec3 emission{0.0f};                              ///< of the sky too
+  Hit hit;                                               ///< of kSurface
+  ShapeHit shape;                                        ///< of kShape
+};
+
+/// The ray through `pixel` (in pixel coordinates, not only centers). Textures are read as a cone of
+/// `spread` radians sees them; 1 / camera.focal is a pixel's. Thin glass is not seen.
+[[nodiscard]] EyeHit trace_eye(const World& world, const Camera& camera, const glm::vec2& pixel,
+                               float spread);
 
 /// The frame that motion leads to.
 struct PreviousView {

@@ -1,9 +1,6 @@
 #include "render/live_source.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 #include "frame/check.h"
@@ -13,6 +10,7 @@
 #include "render/gbuffer.h"
 #include "render/light_set.h"
 #include "render/path_tracer.h"
+#include "render/sample_mean.h"
 #include "render/sampler.h"
 #include "render/surface.h"
 
@@ -26,37 +24,6 @@ constexpr int kTileSide = 16;
 // Sequences of the two layers are independent of each other.
 constexpr std::uint32_t kIndirectStream = 0;
 constexpr std::uint32_t kDirectStream = 1;
-
-struct Counters {
-  std::int64_t rays = 0;
-  std::int64_t non_finite = 0;
-};
-
-// Mean of the finite samples. NaN if there are samples but none is finite: the pixel knows nothing,
-// and black would claim that it does.
-class FiniteMean {
- public:
-  void add(const glm::vec3& sample, Counters& counters) {
-    if (std::isfinite(sample.x) && std::isfinite(sample.y) && std::isfinite(sample.z)) {
-      sum_ += sample;
-      ++count_;
-    } else {
-      ++counters.non_finite;
-    }
-  }
-  [[nodiscard]] glm::vec3 value() const {
-    if (count_ == 0) return glm::vec3(std::numeric_limits<float>::quiet_NaN());
-    return sum_ / static_cast<double>(count_);
-  }
-
- private:
-  glm::dvec3 sum_{0.0};
-  int count_ = 0;
-};
-
-void store(const glm::vec3& value, int x, int y, Planes<3>& planes) {
-  for (int c = 0; c < 3; ++c) planes[static_cast<std::size_t>(c)](x, y) = value[c];
-}
 
 bool same_place(const AreaRect& a, const AreaRect& b) {
   return a.center == b.center && a.half_u == b.half_u && a.half_v == b.half_v;
@@ -96,9 +63,9 @@ struct LiveSource::State {
 
   void pose(Frame& frame);
   void render(const Tile& tile, Frame& frame);
-  void light(glm::ivec2 at, Frame& frame, Counters& tally);
+  void light(glm::ivec2 at, Frame& frame, RayCounters& tally);
   [[nodiscard]] glm::vec3 draw(glm::ivec2 at, std::uint32_t count, const Frame& frame,
-                               Counters& tally);
+                               RayCounters& tally);
   void add_counters(Frame& frame) const;
   [[nodiscard]] std::uint32_t key(glm::ivec2 at, std::uint32_t stream, int frame) const {
     return hash_key(options.seed, frame, at.x, at.y, stream);
@@ -117,7 +84,7 @@ struct LiveSource::State {
   std::vector<glm::mat4> previous_poses;  // of all instances
   Plane<GuideHit> hits;                   // of the frame that was delivered last
   Plane<std::uint32_t> drawn;             // indirect samples of each pixel of that frame
-  std::vector<Counters> counters;         // per tile
+  std::vector<RayCounters> counters;      // per tile
 };
 
 // Camera, poses and lights of `frame.index` and of the frame before it.
@@ -142,7 +109,7 @@ void LiveSource::State::pose(Frame& frame) {
 
 // `count` further samples of indirect light.
 glm::vec3 LiveSource::State::draw(glm::ivec2 at, std::uint32_t count, const Frame& frame,
-                                  Counters& tally) {
+                                  RayCounters& tally) {
   const std::uint32_t k = key(at, kIndirectStream, frame.index);
   std::uint32_t& next = drawn(at.x, at.y);
   FiniteMean mean;
@@ -153,7 +120,7 @@ glm::vec3 LiveSource::State::draw(glm::ivec2 at, std::uint32_t count, const Fram
   return mean.value();
 }
 
-void LiveSource::State::light(glm::ivec2 at, Frame& frame, Counters& tally) {
+void LiveSource::State::light(glm::ivec2 at, Frame& frame, RayCounters& tally) {
   glm::vec3 indirect(0.0f), direct(0.0f);
   drawn(at.x, at.y) = 0;
   const GuideHit& guide = hits(at.x, at.y);
@@ -167,12 +134,12 @@ void LiveSource::State::light(glm::ivec2 at, Frame& frame, Counters& tally) {
     }
     direct = mean.value();
   }
-  store(indirect, at.x, at.y, frame.indirect);
-  store(direct, at.x, at.y, frame.direct);
+  store_pixel(indirect, at.x, at.y, frame.indirect);
+  store_pixel(direct, at.x, at.y, frame.direct);
 }
 
 void LiveSource::State::render(const Tile& tile, Frame& frame) {
-  Counters tally;
+  RayCounters tally;
   tally.rays = trace_guides({geometry, surfaces, lights}, previous, tile, frame, hits);
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0; x < tile.x1; ++x) light({x, y}, frame, tally);
@@ -181,7 +148,7 @@ void LiveSource::State::render(const Tile& tile, Frame& frame) {
 }
 
 void LiveSource::State::add_counters(Frame& frame) const {
-  for (const Counters& tally : counters) {
+  for (const RayCounters& tally : counters) {
     frame.rays += tally.rays;
     frame.non_finite_samples += tally.non_finite;
   }
@@ -225,17 +192,28 @@ bool LiveSource::resample(const Plane<std::uint8_t>& extra, Frame& frame, Planes
            s.options.extent.width, s.options.extent.height);
   ensure_extent(mean, s.options.extent);
   for_each_tile(s.grid, [&](const Tile& tile) {
-    Counters tally;
+    RayCounters tally;
     for (int y = tile.y0; y < tile.y1; ++y) {
       for (int x = tile.x0; x < tile.x1; ++x) {
         const bool lit = extra(x, y) > 0 && s.hits(x, y).kind == GuideHit::Kind::kSurface;
-        store(lit ? s.draw({x, y}, extra(x, y), frame, tally) : glm::vec3(0.0f), x, y, mean);
+        store_pixel(lit ? s.draw({x, y}, extra(x, y), frame, tally) : glm::vec3(0.0f), x, y, mean);
       }
     }
     s.counters[static_cast<std::size_t>(tile.index)] = tally;
   });
   s.add_counters(frame);
   return true;
+}
+
+PictureStats LiveSource::picture(const AntialiasOptions& options, const Frame& frame,
+                                 const Planes<3>& indirect, Planes<3>& out) {
+  const State& s = *state_;
+  EL_CHECK(s.position > 0 && frame.index == s.frames[s.position - 1],
+           "picture: frame {} is not the one that was delivered last", frame.index);
+  const World world{s.geometry, s.surfaces, s.lights};
+  const GuideMap guides{frame, s.hits, indirect};
+  return render_picture(
+      options, {world, s.tracer, guides, s.options.spp, s.options.direct_spp, s.options.seed}, out);
 }
 
 }  // namespace eigenlight

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "frame/frame.h"
+#include "render/antialias/picture.h"
 #include "render/scene.h"
 
 namespace eigenlight {
@@ -34,6 +35,12 @@ class LiveSource final : public FrameSource {
   [[nodiscard]] bool next(Frame& frame) override;
   [[nodiscard]] bool resample(const Plane<std::uint8_t>& extra, Frame& frame,
                               Planes<3>& mean) override;
+
+  /// The antialiased picture of the frame that next() delivered last, with `indirect` (filtered,
+  /// over albedo) in place of its own; render_picture(). Changes nothing of `frame`. Throws
+  /// std::invalid_argument if `frame` is another one, planes differ in size, or the mode is kNone.
+  PictureStats picture(const AntialiasOptions& options, const Frame& frame,
+                       const Planes<3>& indirect, Planes<3>& out);
 
  private:
   struct State;

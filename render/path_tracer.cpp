@@ -111,6 +111,22 @@ glm::vec3 PathTracer::aim(const SurfacePoint& point, Sampler& sampler, std::int6
   return sum;
 }
 
+std::uint8_t PathTracer::lit_by(const SurfacePoint& point, std::int64_t& rays) const {
+  const glm::vec2 middle(0.5f);
+  const auto reaches = [&](const std::optional<LightSample>& sample) {
+    if (!sample) return false;
+    const glm::vec3 light = shadowed(point, *sample, 0.0f, rays);
+    return std::max({light.x, light.y, light.z}) > 0.0f;
+  };
+  std::uint8_t lit = 0;
+  if (world_.lights.has_suns() && reaches(world_.lights.sample_sun(point.normal, middle))) lit |= 1;
+  if (world_.lights.has_local() &&
+      reaches(world_.lights.sample_local(ray_origin(point), middle.x, middle))) {
+    lit |= 2;
+  }
+  return lit;
+}
+
 glm::vec3 PathTracer::direct(const SurfacePoint& point, Sampler& sampler,
                              std::int64_t& rays) const {
   Bounce bounce;

@@ -36,6 +36,11 @@ class PathTracer {
   [[nodiscard]] glm::vec3 indirect(const SurfacePoint& point, Sampler& sampler,
                                    std::int64_t& rays) const;
 
+  /// Which lights shine on the point: bit 0 for a sun, bit 1 for a local light, each judged by one
+  /// ray to one fixed place of the light that the point would choose at random number 1/2. Without
+  /// noise, so that neighboring points may be told apart by it.
+  [[nodiscard]] std::uint8_t lit_by(const SurfacePoint& point, std::int64_t& rays) const;
+
  private:
   struct Bounce;
   [[nodiscard]] glm::vec3 aim(const SurfacePoint& point, Sampler& sampler,

@@ -115,6 +115,7 @@ void FrameWriter::add(Layer layer, const DenoisedFrame& denoised) {
   Planes<3>& scratch = scratch_[used_scratch_++];
   switch (layer) {
     case Layer::kColor:
+      if (denoised.picture) return add_planes("", "RGB", denoised.picture->data(), false);
       compose(frame, denoised.indirect, scratch);
       return add_planes("", "RGB", scratch.data(), false);
     case Layer::kIndirect:

@@ -14,7 +14,8 @@
 namespace eigenlight {
 
 /// The layers of a frame file. All radiance is linear Rec. 709 and not clamped.
-///   color     R,G,B        albedo * (direct + denoised indirect) + emission; the unnamed layer
+///   color     R,G,B        albedo * (direct + denoised indirect) + emission, or the antialiased
+///                          picture of the same; the unnamed layer
 ///   indirect  R,G,B        albedo * denoised indirect
 ///   noisy     R,G,B        albedo * raw indirect of the frame's own samples, NaN and Inf kept
 ///   direct    R,G,B        albedo * direct
@@ -26,7 +27,8 @@ namespace eigenlight {
 ///   motion    X,Y          pixels; what is seen at p was at p + motion in the frame before
 ///   id                     object, 0 where there is no surface
 ///   age                    frames' worth of samples behind the pixel
-/// So color = direct + indirect + emission.
+/// So color = direct + indirect + emission, unless it is antialiased: all other layers are of the
+/// guide rays alone.
 enum class Layer {
   kColor,
   kIndirect,
@@ -58,6 +60,7 @@ struct DenoisedFrame {
   const Frame& frame;
   const Planes<3>& indirect;  ///< denoised, over albedo
   const Plane<float>& age;
+  const Planes<3>* picture = nullptr;  ///< the layer color, where it is not composed from the rest
 };
 
 /// Writes frames into a directory. Radiance, albedo, N and age are half; Z, P and motion float; id

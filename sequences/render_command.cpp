@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 
 #include "frame/tiles.h"
@@ -38,6 +39,7 @@ RunDescription describe(const RenderSettings& settings, const RenderPlan& plan,
   run.bases = plan.bases;
   run.seed = plan.render.seed;
   run.perturb = plan.perturb;
+  run.antialias = format_antialias(plan.antialias);
   run.layers = format_layers(plan.layers);
   run.exposure = scene.exposure;
   return run;
@@ -53,6 +55,7 @@ std::vector<ExrAttribute> file_attributes(const RunDescription& run) {
           {"eigenlight.bounces", run.bounces},
           {"eigenlight.seed", fmt::format("{}", run.seed)},
           {kPerturbAttribute, run.perturb},
+          {"eigenlight.antialias", run.antialias},
           {"eigenlight.exposure", run.exposure}};
 }
 
@@ -83,6 +86,8 @@ class RenderJob {
   void say_what_comes(const FrameWriter& writer) const;
   // Renders frames from `position_` on, until the last one or an interrupt.
   void render(const Animation& animation, const Scene& scene, FrameWriter& writer);
+  // Antialiases the frame that the denoiser pulled last, if that is asked for and will be seen.
+  FrameOutput write_frame(LiveSource& source, const Planes<3>& indirect, FrameWriter& writer);
   int stopped() const;
   int finished();
 
@@ -93,6 +98,7 @@ class RenderJob {
   std::unique_ptr<Denoiser> denoiser_;
   std::unique_ptr<RunDirectory> directory_;
   std::size_t position_ = 0;
+  Planes<3> picture_;
   RunTotals totals_;
 };
 
@@ -141,11 +147,9 @@ void RenderJob::render(const Animation& animation, const Scene& scene, FrameWrit
   for (; position_ < plan_.frames.size() && !interrupt_.interrupted(); ++position_) {
     const Planes<3>* indirect = denoiser_->step(source);
     if (!indirect) throw std::logic_error("the source ended before the last frame");
-    StageClock clock;
-    writer.write({denoiser_->frame(), *indirect, denoiser_->age()});
-    const StageTime write_time = clock.lap();
-    log.append(denoiser_->report(), denoiser_->frame().spp, write_time);
-    totals_.add(denoiser_->report(), write_time);
+    const FrameOutput output = write_frame(source, *indirect, writer);
+    log.append(denoiser_->report(), denoiser_->frame().spp, output);
+    totals_.add(denoiser_->report(), output);
     progress.frame_done(plan_.frames[position_]);
     if (Clock::now() - saved < kCheckpointInterval) continue;
     directory_->save(position_ + 1, *denoiser_);
@@ -153,6 +157,22 @@ void RenderJob::render(const Animation& animation, const Scene& scene, FrameWrit
   }
   directory_->save(position_, *denoiser_);
   totals_.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+FrameOutput RenderJob::write_frame(LiveSource& source, const Planes<3>& indirect,
+                                   FrameWriter& writer) {
+  FrameOutput output;
+  StageClock clock;
+  const Frame& frame = denoiser_->frame();
+  const bool antialiases = plan_.antialias.mode != AntialiasMode::kNone &&
+                           std::count(plan_.layers.begin(), plan_.layers.end(), Layer::kColor) > 0;
+  if (antialiases) {
+    output.picture = source.picture(plan_.antialias, frame, indirect, picture_);
+    output.antialias = clock.lap();
+  }
+  writer.write({frame, indirect, denoiser_->age(), antialiases ? &picture_ : nullptr});
+  output.write = clock.lap();
+  return output;
 }
 
 int RenderJob::stopped() const {

@@ -86,6 +86,7 @@ RenderPlan make_plan(const RenderSettings& settings) {
   plan.bases = settings.bases;
   plan.perturbation = parse_perturbation(settings.perturb);
   plan.perturb = format_perturbation(plan.perturbation);
+  plan.antialias = parse_antialias(settings.antialias);
   plan.layers = parse_layers(settings.layers);
 
   RenderOptions& render = plan.render;

@@ -24,6 +24,7 @@ struct RenderSettings {
   std::int64_t seed = 0;
   int bounces = 3;
   std::string perturb = "none";
+  std::string antialias = "none";
   std::string layers;  ///< empty: all
   int threads = 0;     ///< 0: one per core
   bool environment = false;
@@ -44,6 +45,7 @@ struct RenderPlan {
   int bases = 3;
   Perturbation perturbation = Perturbation::kNone;
   std::string perturb;
+  AntialiasOptions antialias;
   std::vector<Layer> layers;
 };
 

@@ -134,6 +134,7 @@ Json summary_of(const Record& run, const std::vector<Record>& lines) {
   row("scene", field<std::string>(run, "/scene"));
   row("perturbation", field<std::string>(run, "/perturb"));
   row("method", field<std::string>(run, "/method"));
+  row("antialiasing", field<std::string>(run, "/antialias"));
   if (total(column<double>(lines, "/rank")) > 0.0) {
     row("bases", fmt::format("up to {}", field<int>(run, "/bases")));
   }

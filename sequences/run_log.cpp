@@ -70,6 +70,7 @@ std::string to_json_text(const RunDescription& run) {
                   {"bases", run.bases},
                   {"seed", run.seed},
                   {"perturb", run.perturb},
+                  {"antialias", run.antialias},
                   {"layers", run.layers},
                   {"exposure", run.exposure},
                   {"frames_per_second", kFramesPerSecond}};
@@ -95,12 +96,13 @@ RunLog::RunLog(const std::filesystem::path& directory, const std::vector<int>& f
   file_.open(path_, std::ios::app | std::ios::binary);
 }
 
-void RunLog::append(const FrameReport& report, int spp, const StageTime& write) {
+void RunLog::append(const FrameReport& report, int spp, const FrameOutput& output) {
   Json stages = Json::object();
   for (std::size_t s = 0; s < kStageNames.size(); ++s) {
     stages[std::string(kStageNames[s])] = to_json(report.time[s]);
   }
-  stages["write"] = to_json(write);
+  stages["antialias"] = to_json(output.antialias);
+  stages["write"] = to_json(output.write);
   const double surface = static_cast<double>(report.surface_pixels);
   const double new_share =
       report.surface_pixels > 0 ? static_cast<double>(report.new_pixels) / surface : 0.0;
@@ -108,6 +110,10 @@ void RunLog::append(const FrameReport& report, int spp, const StageTime& write) 
                   {"cut", report.cut},
                   {"stages", stages},
                   {"rays", report.rays},
+                  {"antialias",
+                   {{"rays", output.picture.rays},
+                    {"unmatched", output.picture.unmatched},
+                    {"non_finite", output.picture.non_finite}}},
                   {"samples", spp * report.surface_pixels + report.extra_samples},
                   {"extra_samples", report.extra_samples},
                   {"surface_pixels", report.surface_pixels},
@@ -129,16 +135,18 @@ void RunLog::append(const FrameReport& report, int spp, const StageTime& write) 
   }
 }
 
-void RunTotals::add(const FrameReport& report, const StageTime& write_time) {
+void RunTotals::add(const FrameReport& report, const FrameOutput& output) {
   ++frames;
   rays += report.rays;
-  non_finite += report.non_finite_pixels + report.non_finite_samples;
+  non_finite += report.non_finite_pixels + report.non_finite_samples + output.picture.non_finite;
   for (std::size_t s = 0; s < time.size(); ++s) {
     time[s].wall_ms += report.time[s].wall_ms;
     time[s].cpu_ms += report.time[s].cpu_ms;
   }
-  write.wall_ms += write_time.wall_ms;
-  write.cpu_ms += write_time.cpu_ms;
+  antialias.wall_ms += output.antialias.wall_ms;
+  antialias.cpu_ms += output.antialias.cpu_ms;
+  write.wall_ms += output.write.wall_ms;
+  write.cpu_ms += output.write.cpu_ms;
 }
 
 double RunTotals::mega_rays_per_second() const {
@@ -154,6 +162,7 @@ std::string RunTotals::to_json(const std::filesystem::path& directory) const {
     mean[std::string(name)] = {{"wall", stage.wall_ms / n}, {"cpu", stage.cpu_ms / n}};
   };
   for (std::size_t s = 0; s < time.size(); ++s) add_mean(kStageNames[s], time[s]);
+  add_mean("antialias", antialias);
   add_mean("write", write);
   const Json json{
       {"frames", frames}, {"seconds", seconds},       {"mrays_per_second", mega_rays_per_second()},
@@ -168,10 +177,12 @@ std::string RunTotals::to_text(const std::filesystem::path& directory) const {
   const double render = time[static_cast<std::size_t>(Stage::kSource)].wall_ms +
                         time[static_cast<std::size_t>(Stage::kResample)].wall_ms;
   denoise -= render;
+  const std::string smooth =
+      antialias.wall_ms > 0.0 ? fmt::format("antialias {:.1f}, ", antialias.wall_ms / n) : "";
   std::string text = fmt::format(
-      "{} frames in {:.1f} s: render {:.1f}, denoise {:.1f}, write {:.1f} ms a frame; "
+      "{} frames in {:.1f} s: render {:.1f}, denoise {:.1f}, {}write {:.1f} ms a frame; "
       "{:.2f} Mrays/s; {}\n",
-      frames, seconds, render / n, denoise / n, write.wall_ms / n, mega_rays_per_second(),
+      frames, seconds, render / n, denoise / n, smooth, write.wall_ms / n, mega_rays_per_second(),
       directory.string());
   if (non_finite > 0)
     text += fmt::format("excluded: {} pixels or samples with NaN or Inf\n", non_finite);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "frame/plane.h"
+#include "render/antialias/picture.h"
 #include "temporal/denoiser.h"
 
 namespace eigenlight {
@@ -25,6 +26,7 @@ struct RunDescription {
   int bases = 0;
   std::uint32_t seed = 0;
   std::string perturb;
+  std::string antialias = "none";
   std::string layers;
   float exposure = 1.0f;
 };
@@ -36,10 +38,18 @@ struct RunDescription {
 /// none. Throws std::runtime_error if one is not a JSON object.
 [[nodiscard]] std::string first_difference(std::string_view there, std::string_view here);
 
+/// What became of a frame after it was denoised.
+struct FrameOutput {
+  StageTime write;
+  StageTime antialias = {};
+  PictureStats picture = {};
+};
+
 /// frames.jsonl: one JSON object a frame, in the order of the run.
 ///   frame, cut           number; whether no history was taken over
-///   stages               {name: {wall_ms, cpu_ms}} of kStageNames, and "write"
-///   rays                 traced for this frame
+///   stages               {name: {wall_ms, cpu_ms}} of kStageNames, "antialias" and "write"
+///   rays                 traced for this frame before antialiasing
+///   antialias            {rays, unmatched, non_finite} of the picture: PictureStats
 ///   samples              of indirect light: spp * surface_pixels + extra_samples
 ///   extra_samples, surface_pixels, new_pixels
 ///   new_share            new_pixels / surface_pixels; 0 without surface
@@ -54,7 +64,7 @@ class RunLog {
 
   /// Appends the line of a frame. Throws std::runtime_error naming the file if it cannot be
   /// written.
-  void append(const FrameReport& report, int spp, const StageTime& write);
+  void append(const FrameReport& report, int spp, const FrameOutput& output);
 
  private:
   std::filesystem::path path_;
@@ -68,9 +78,9 @@ struct RunTotals {
   std::int64_t non_finite = 0;  ///< pixels and samples excluded
   double seconds = 0.0;
   std::array<StageTime, kStageNames.size()> time{};
-  StageTime write;
+  StageTime write, antialias;
 
-  void add(const FrameReport& report, const StageTime& write_time);
+  void add(const FrameReport& report, const FrameOutput& output);
   /// Million rays per second of wall time of the stages that trace them, source and resample.
   [[nodiscard]] double mega_rays_per_second() const;
   /// `frames`, `seconds`, `mrays_per_second`, `mean_ms` ({stage: {wall, cpu}}), `non_finite`,

@@ -1,0 +1,44 @@
+// The guide rays of a frame, as further eye rays see them.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+
+#include "frame/frame.h"
+#include "render/gbuffer.h"
+#include "render/sample_mean.h"
+
+namespace eigenlight {
+
+/// Geometry and light at the first hit of the ray through each pixel center. All of one extent, and
+/// must outlive this. Nothing here is changed by antialiasing: filters read it.
+struct GuideMap {
+  const Frame& frame;
+  const Plane<GuideHit>& hits;
+  const Planes<3>& indirect;  ///< filtered, over albedo
+
+  [[nodiscard]] bool is_surface(int x, int y) const {
+    return frame.extent().contains(x, y) && hits(x, y).kind == GuideHit::Kind::kSurface;
+  }
+  [[nodiscard]] float depth(int x, int y) const { return frame.surface.depth(x, y); }
+  [[nodiscard]] glm::vec3 normal(int x, int y) const {
+    return load_pixel(frame.surface.normal, x, y);
+  }
+  [[nodiscard]] glm::vec3 indirect_light(int x, int y) const { return load_pixel(indirect, x, y); }
+  [[nodiscard]] glm::vec3 light(int x, int y) const {
+    return load_pixel(frame.direct, x, y) + indirect_light(x, y);
+  }
+  /// What the picture shows of the guide ray alone.
+  [[nodiscard]] glm::vec3 color(int x, int y) const {
+    return load_pixel(frame.surface.albedo, x, y) * light(x, y) + load_pixel(frame.emission, x, y);
+  }
+};
+
+/// A further eye ray that met a surface.
+struct EyePoint {
+  glm::vec2 pixel{0.0f};  ///< pixel coordinates
+  float depth = 0.0f;     ///< along the view axis, > 0
+  glm::vec3 normal{0.0f};
+};
+
+}  // namespace eigenlight
