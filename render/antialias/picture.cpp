@@ -16,10 +16,10 @@ namespace {
 
 constexpr int kTileSide = 16;  // as LiveSource
 
-// Of a pixel whose upper left corner is (0, 0). With the center, which the guide ray takes, no two
-// of the five share a row or a column.
+// Of a pixel whose upper left corner is (0, 0). A square grid turned by atan(1/2): with its center,
+// which the guide ray takes, the five split rows and columns evenly.
 constexpr std::array<glm::vec2, 4> kRotatedGrid{
-    {{0.125f, 0.625f}, {0.375f, 0.125f}, {0.625f, 0.875f}, {0.875f, 0.375f}}};
+    {{0.1f, 0.7f}, {0.3f, 0.1f}, {0.7f, 0.9f}, {0.9f, 0.3f}}};
 
 // Sequences apart from those of the guide rays, which LiveSource draws from streams 0 and 1.
 constexpr std::uint32_t kPlaceStream = 2;

@@ -14,6 +14,7 @@
 #include "frame/tiles.h"
 #include "sequences/atomic_file.h"
 #include "sequences/exr_io.h"
+#include "tests/support/compare.h"
 #include "tests/support/temp_dir.h"
 
 namespace eigenlight {
@@ -160,6 +161,8 @@ TEST_F(CliTest, EachMistakeIsOneClearLine) {
       {{"--frames", "-10-100"}, "frames '-10-100': flythroughs start at frame 0"},
       {{"--layers", "color,depth"}, "unknown layer 'depth'; known: color, "},
       {{"--perturb", "camera"}, "camera"},
+      {{"--aa", "fxaa"}, "unknown aa 'fxaa'; known: none, lookup, sraa, supersample:N"},
+      {{"--aa", "supersample:1"}, "aa 'supersample:1': expected supersample:N with N from 2"},
       {{"--frobnicate"}, "--frobnicate"},
   };
   for (const Mistake& mistake : mistakes) {
@@ -221,6 +224,26 @@ TEST_F(CliTest, ResumingAFinishedRunRendersNothing) {
   const Outcome other = render("a", {"--frames", "0-1", "--resume", "--spp", "5"});
   EXPECT_EQ(other.status, 2);
   EXPECT_THAT(other.err, HasSubstr("state.bin: of another run: spp is 3 there, 5 here"));
+}
+
+// Only the picture is antialiased: all other layers are those of the guide rays, and the run says
+// what it did.
+TEST_F(CliTest, AntialiasingChangesTheColorAlone) {
+  EXPECT_EQ(render("plain", {"--frames", "0"}).status, 0);
+  const ExrReader plain(dir_ / "plain/frame.0000.exr");
+  for (const char* aa : {"lookup", "sraa", "supersample:2"}) {
+    EXPECT_EQ(render(aa, {"--frames", "0", "--aa", aa}).status, 0);
+    const ExrReader smooth(dir_ / (std::string(aa) + "/frame.0000.exr"));
+    for (const char* layer : {"indirect", "direct", "emission", "albedo", "N", "noisy"}) {
+      EXPECT_TRUE(planes_equal(smooth.read_planes<3>(layer), plain.read_planes<3>(layer))) << layer;
+    }
+    EXPECT_FALSE(planes_equal(smooth.read_planes<3>(""), plain.read_planes<3>("")));
+    EXPECT_EQ(std::get<std::string>(*smooth.attribute("eigenlight.antialias")), aa);
+    EXPECT_THAT(bytes(std::string(aa) + "/frames.jsonl"), HasSubstr("\"unmatched\":"));
+  }
+  const Outcome other = render("sraa", {"--frames", "0", "--aa", "lookup", "--resume"});
+  EXPECT_EQ(other.status, 2);
+  EXPECT_THAT(other.err, HasSubstr("of another run: antialias is sraa there, lookup here"));
 }
 
 TEST(QuoteForShell, QuotesWhatAShellWouldSplit) {

@@ -82,6 +82,20 @@ TEST(Output, LayersAddUpToTheColor) {
   EXPECT_EQ(reader.read("P")[0](20, 20), example.frame.position[0](20, 20));
 }
 
+TEST(Output, APictureTakesThePlaceOfTheComposedColor) {
+  const TempDir dir;
+  const Example example;
+  Planes<3> picture = make_planes<3>(example.frame.extent());
+  picture[1].fill(0.375f);
+  FrameWriter writer(dir.path(), parse_layers("color,direct"), {});
+  writer.write({example.frame, example.indirect, example.age, &picture});
+  const ExrReader reader(dir / "frame.0000.exr");
+  const auto color = reader.read_planes<3>("");
+  EXPECT_EQ(color[0](20, 20), 0.0f);
+  EXPECT_EQ(color[1](20, 20), 0.375f);
+  EXPECT_GT(reader.read_planes<3>("direct")[0](20, 20), 0.0f);
+}
+
 TEST(Output, NothingIsClampedToTheRangeOfHalf) {
   const TempDir dir;
   Example example;

@@ -35,7 +35,7 @@ TEST(RunLog, WritesALineForEachFrame) {
   const TempDir dir;
   {
     RunLog log(dir.path(), {5, 6}, 0);
-    log.append(report_of(5), 3, {1.5, 2.5});
+    log.append(report_of(5), 3, {{1.5, 2.5}, {7.0, 8.0}, {900, 1, 12}});
     log.append(report_of(6), 3, {});
   }
   const std::string text = read_whole_file(dir / "frames.jsonl");
@@ -50,6 +50,10 @@ TEST(RunLog, WritesALineForEachFrame) {
   EXPECT_EQ(line["non_finite_pixels"], 2);
   EXPECT_EQ(line["stages"]["source"]["cpu_ms"], 19.0);
   EXPECT_EQ(line["stages"]["write"]["wall_ms"], 1.5);
+  EXPECT_EQ(line["stages"]["antialias"]["cpu_ms"], 8.0);
+  EXPECT_EQ(line["antialias"]["rays"], 900);
+  EXPECT_EQ(line["antialias"]["non_finite"], 1);
+  EXPECT_EQ(line["antialias"]["unmatched"], 12);
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2);
 }
 
@@ -97,8 +101,9 @@ TEST(RunLog, NamesTheFirstDifferenceOfTwoRuns) {
 
 TEST(RunLog, TotalsAreMeansAndRates) {
   RunTotals totals;
-  totals.add(report_of(0), {2.0, 4.0});
-  totals.add(report_of(1), {4.0, 4.0});
+  totals.add(report_of(0), {{2.0, 4.0}});
+  totals.add(report_of(1), {{4.0, 4.0}});
+  EXPECT_THAT(totals.to_text("out"), testing::Not(HasSubstr("antialias")));
   totals.seconds = 1.25;
   EXPECT_NEAR(totals.mega_rays_per_second(), 2000 / 20e-3 * 1e-6, 1e-9);
   const json summary = json::parse(totals.to_json("out"));
@@ -109,6 +114,10 @@ TEST(RunLog, TotalsAreMeansAndRates) {
   EXPECT_EQ(summary["directory"], "out");
   EXPECT_THAT(totals.to_text("out"), HasSubstr("render 10.0, denoise 3.0, write 3.0 ms a frame"));
   EXPECT_THAT(totals.to_text("out"), HasSubstr("excluded: 4 pixels or samples"));
+  totals.add(report_of(2), {{3.0, 4.0}, {9.0, 18.0}, {900, 1, 12}});
+  EXPECT_THAT(totals.to_text("out"), HasSubstr("antialias 3.0, write 3.0 ms a frame"));
+  EXPECT_THAT(totals.to_text("out"), HasSubstr("excluded: 7 pixels or samples"));
+  EXPECT_EQ(json::parse(totals.to_json("out"))["mean_ms"]["antialias"]["cpu"], 6.0);
 }
 
 }  // namespace
