@@ -2,26 +2,22 @@
 """Tests of sequences/benchmark and of what it writes to the README."""
 
 import contextlib
-import importlib.machinery
-import importlib.util
 import io
 import json
 import pathlib
+import subprocess
 import sys
 import tempfile
 import unittest
 import xml.etree.ElementTree
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tests" / "bench"))
+sys.path += [str(ROOT / "tests" / "bench"), str(ROOT / "sequences")]
 sys.dont_write_bytecode = True
 
 import report  # noqa: E402
+import step_runner  # noqa: E402
 from chart import Chart, spread  # noqa: E402
-
-loader = importlib.machinery.SourceFileLoader("benchmark", str(ROOT / "sequences" / "benchmark"))
-benchmark = importlib.util.module_from_spec(importlib.util.spec_from_loader("benchmark", loader))
-loader.exec_module(benchmark)
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -38,13 +34,13 @@ class RunnerTest(FolderTest):
         """Adds `text` to a file each time that it runs."""
         log = self.folder / f"{name}.count"
         command = ["sh", "-c", f"printf %s '{text}' >> '{log}'; echo result"]
-        return benchmark.Step(name, 1, [program] if program else [],
+        return step_runner.Step(name, 1, [program] if program else [],
                               [(command, self.folder / f"{name}.out")])
 
     def run_steps(self, *steps):
-        state = benchmark.State(self.folder / "state.json")
+        state = step_runner.State(self.folder / "state.json")
         with contextlib.redirect_stderr(io.StringIO()) as err:
-            benchmark.Runner(state, list(steps), self.folder).run_all()
+            step_runner.Runner(state, list(steps), self.folder).run_all()
         return err.getvalue()
 
     def count(self, name):
@@ -70,23 +66,35 @@ class RunnerTest(FolderTest):
 
     def test_a_failed_step_keeps_those_before_it_and_leaves_no_half_result(self):
         target = self.folder / "broken.out"
-        broken = benchmark.Step("broken", 1, [], [(["sh", "-c", "echo half; exit 3"], target)])
+        broken = step_runner.Step("broken", 1, [], [(["sh", "-c", "echo half; exit 3"], target)])
         with self.assertRaises(SystemExit) as raised:
             self.run_steps(self.step("a"), broken)
         self.assertIn("ended with 3", str(raised.exception))
         self.assertFalse(target.exists())
-        state = benchmark.State(self.folder / "state.json")
+        state = step_runner.State(self.folder / "state.json")
         self.assertTrue(state.is_done(self.step("a")))
         self.assertFalse(state.is_done(broken))
 
     def test_bar_counts_down(self):
-        self.assertIn("." * 30, benchmark.bar(0, 10, 10, "a"))
-        self.assertIn("#" * 15 + "." * 15 + "]    5 min left, a", benchmark.bar(5, 10, 5, "a"))
-        self.assertIn("#" * 30, benchmark.bar(11, 10, 0, "a"))
+        self.assertIn("." * 30, step_runner.bar(0, 10, 10, "a"))
+        self.assertIn("#" * 15 + "." * 15 + "]    5 min left, a", step_runner.bar(5, 10, 5, "a"))
+        self.assertIn("#" * 30, step_runner.bar(11, 10, 0, "a"))
+
+
+class CommandTest(unittest.TestCase):
+    def test_unknown_steps_and_options_end_with_one_line(self):
+        for words, what in ((["--only", "quality,dinner"], "unknown step 'dinner'"),
+                            (["--only", "scaling"], "bench_scaling: No such file"),
+                            (["--pace", "fast"], "unrecognized arguments: --pace fast")):
+            command = [sys.executable, str(ROOT / "sequences" / "benchmark"), "--programs", "none"]
+            run = subprocess.run(command + words, capture_output=True, text=True, check=False)
+            self.assertNotEqual(run.returncode, 0)
+            self.assertIn(what, run.stderr.strip().splitlines()[-1])
 
 
 class SectionTest(unittest.TestCase):
-    TEXT = "a\n<!-- benchmark:x -->\nold\n<!-- /benchmark:x -->\nb\n<!-- benchmark:y -->\n<!-- /benchmark:y -->\n"
+    TEXT = ("a\n<!-- benchmark:x -->\nold\n<!-- /benchmark:x -->\nb\n"
+            "<!-- benchmark:y -->\n<!-- /benchmark:y -->\n")
 
     def test_replaces_between_its_marks_only(self):
         text = report.set_sections(self.TEXT, {"x": "new\n"})

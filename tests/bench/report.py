@@ -43,6 +43,10 @@ def roofline(path):
     return table.roofline(results, heights, [5])
 
 
+def bench_targets(path):
+    return {r.target for r in load_results(path)}
+
+
 def scaling(path, plots):
     """The tables and two plots of bench_scaling."""
     results = list(table.medians(load_results(path)))
@@ -173,7 +177,8 @@ def sections(directory, plots):
     found = {}
     if (directory / "denoise.json").exists():
         found["roofline"] = roofline(directory / "denoise.json")
-        found["targets"] = table.targets(load_results(directory / "denoise.json"))
+        if len(bench_targets(directory / "denoise.json")) > 1:
+            found["targets"] = table.targets(load_results(directory / "denoise.json"))
     if (directory / "scaling.json").exists():
         found["scaling"] = scaling(directory / "scaling.json", plots)
     if (directory / "render.json").exists():
