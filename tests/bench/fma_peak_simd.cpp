@@ -23,7 +23,6 @@ float MultiplyAdds(int rounds) {
   hn::Vec<decltype(d)> sums[kSums];
   for (int k = 0; k < kSums; ++k) sums[k] = hn::Iota(d, static_cast<float>(k));
   for (int i = 0; i < rounds; ++i) {
-#pragma GCC unroll 12
     for (int k = 0; k < kSums; ++k) sums[k] = hn::MulAdd(sums[k], keep, add);
   }
   for (int k = 1; k < kSums; ++k) sums[0] = hn::Add(sums[0], sums[k]);
