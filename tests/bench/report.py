@@ -40,7 +40,7 @@ def roofline(path):
     """At 1280x720, or at all sizes of a run without that one."""
     results = [r for r in load_results(path) if r.threads == 1]
     heights = [720] if any(r.height == 720 for r in results) else None
-    return table.roofline(results, heights, [5])
+    return table.roofline(results, heights, [5]) + "\n\n" + table.loop(results, heights, None)
 
 
 def bench_targets(path):

@@ -111,6 +111,12 @@ class ScriptTest(unittest.TestCase):
         self.assertIn("| atrous | 1280x720 |  | 1 | 4.00 GFLOP at 100 GFLOP/s | 40.00 | 180.0 | 4.5 |",
                       text)
 
+    def test_loop_shows_shares(self):
+        times = {f"{stage}_ms": 25.0 for stage in table.LOOP_STAGES}
+        path = self.write("a.json", [benchmark("loop_stages", 10.0, **times)])
+        text = table.loop(load_results(path), [720], [5])
+        self.assertIn("| 1280x720 | 5 | 100.0 | 25.0 (25 %) |", text)
+
     def test_repetitions_count_once_by_their_median(self):
         path = self.write("a.json", [benchmark("update", r) for r in (9.0, 3.0, 2.0)])
         text = table.roofline(load_results(path), [720], [5])

@@ -4,6 +4,8 @@
 table.py roofline RESULT.json [--heights 720] [--bases 5]
     each stage beside its floor: the copy of the bytes that it must move, or, for stages that are
     bound by arithmetic, its operations at the peak of multiply-adds, both measured in the same run
+table.py loop RESULT.json [--heights 720] [--bases 5]
+    where the loop's time goes
 table.py targets RESULT.json
     CPU time of each stage by instruction set
 table.py scaling RESULT.json
@@ -21,6 +23,9 @@ import subprocess
 import sys
 
 from results import load_results
+
+
+LOOP_STAGES = ("reproject", "budget", "project", "update", "filter")
 
 
 def markdown(head, rows):
@@ -53,7 +58,9 @@ def roofline(results, heights, bases):
     head = ["stage", "size", "K", "threads", "floor", "floor ms", "CPU ms", "ratio", "Mpixel/s"]
     rows = []
     for result in medians(results):
-        if result.target or (heights and result.height not in heights):
+        if result.stage == "loop_stages" or result.target:
+            continue
+        if heights and result.height not in heights:
             continue
         if bases and result.bases and result.value not in bases:
             continue
@@ -77,6 +84,20 @@ def targets(results):
         cells = [f"{found[t]:.1f}" if t in found else "" for t in sorted(names)]
         rows.append([stage, size, bases] + cells)
     return markdown(["stage", "size", "K"] + [f"{names[t]}, ms" for t in sorted(names)], rows)
+
+
+def loop(results, heights, bases):
+    """The loop's own stages: milliseconds, and shares of the whole."""
+    rows = []
+    for result in medians(results):
+        if result.stage != "loop_stages" or (heights and result.height not in heights):
+            continue
+        if bases and result.value not in bases:
+            continue
+        times = [result[f"{stage}_ms"] for stage in LOOP_STAGES]
+        rows.append([result.size, result.bases, f"{result['cpu_ms']:.1f}"])
+        rows[-1] += [f"{t:.1f} ({100 * t / result['cpu_ms']:.0f} %)" for t in times]
+    return markdown(["loop at", "K", "CPU ms", *LOOP_STAGES], rows)
 
 
 def scaling_table(results, stage, column, label):
@@ -148,7 +169,7 @@ def numbers(text):
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("table", choices=["roofline", "targets", "scaling", "peer"])
+    parser.add_argument("table", choices=["roofline", "loop", "targets", "scaling", "peer"])
     parser.add_argument("result")
     parser.add_argument("--heights", type=numbers, help="such as 720,1080; without it all")
     parser.add_argument("--bases", type=numbers, help="such as 5; without it all")
@@ -157,6 +178,8 @@ def main():
     results = load_results(options.result)
     if options.table == "roofline":
         print(roofline(results, options.heights, options.bases))
+    elif options.table == "loop":
+        print(loop(results, options.heights, options.bases))
     elif options.table == "targets":
         print(targets(results))
     elif options.table == "scaling":
