@@ -11,6 +11,7 @@
 #include "sequences/evaluate_command.h"
 #include "sequences/list_commands.h"
 #include "sequences/render_command.h"
+#include "sequences/train_pyramid_command.h"
 
 namespace eigenlight {
 namespace {
@@ -75,6 +76,7 @@ int parse_and_run(std::span<const char* const> args, const Console& console) {
   const CLI::App* scenes = app.add_subcommand("scenes", "List the built-in scenes");
   const CLI::App* methods = app.add_subcommand("methods", "List the methods");
   add_evaluate_command(app, console.out);
+  add_train_pyramid_command(app, console);
   try {
     app.parse(static_cast<int>(args.size()), args.data());
   } catch (const CLI::Success& help_or_version) {

@@ -5,6 +5,7 @@
 #include "spatial/atrous_filter.h"
 #include "spatial/cross_bilateral.h"
 #include "spatial/guided_spatial.h"
+#include "spatial/pyramid_filter.h"
 #include "temporal/baselines/bmfr.h"
 #include "temporal/baselines/chen2012.h"
 #include "temporal/baselines/hems2010.h"
@@ -78,6 +79,11 @@ const std::vector<Method>& methods() {
        "Eisemann and Durand 2004; Petschnigg et al. 2004",
        [](const DenoiserOptions& options) {
          return through<CrossBilateral>(options, "cross-bilateral", CrossBilateralOptions{});
+       }},
+      {"pyramid", "each frame alone: bilateral filtering out of a pyramid, with trained weights",
+       "Xu et al. 2024",
+       [](const DenoiserOptions& options) {
+         return through<PyramidFilter>(options, "pyramid", GlobalIlluminationEdge{});
        }},
       {"noisy", "the frames as they are rendered", "",
        [](const DenoiserOptions& options) { return by_frame(options, "noisy", nullptr); }},

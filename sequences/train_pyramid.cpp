@@ -1,0 +1,153 @@
+#include "sequences/train_pyramid.h"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+#include "render/builtin_scenes.h"
+#include "render/live_source.h"
+#include "sequences/exr_io.h"
+#include "sequences/flythrough.h"
+#include "sequences/ldr_image.h"
+#include "spatial/training/training_images.h"
+
+namespace eigenlight {
+namespace {
+
+// Sides of training images: windows of radius 16 and 64 fit several times.
+constexpr int kSmallSide = 128, kLargeSide = 192;
+constexpr int kLargestSmallRadius = 16;
+constexpr std::array<float, 3> kColorSigmas{0.05f, 0.1f, 0.2f};
+// Frame of the flythrough that is rendered; any would do.
+constexpr int kFrame = 20;
+// Sides of a rendered frame, in sides of the part that is taken.
+constexpr int kFrameParts = 3;
+
+Planes<3> crop_middle(const Planes<3>& image, int side, const std::string& name) {
+  const Extent extent = image[0].extent();
+  if (extent.width < side || extent.height < side) {
+    throw std::runtime_error(fmt::format("{}: {}x{} pixels, expected {} or more on each side", name,
+                                         extent.width, extent.height, side));
+  }
+  const int x0 = (extent.width - side) / 2, y0 = (extent.height - side) / 2;
+  Planes<3> middle = make_planes<3>({side, side});
+  for (std::size_t c = 0; c < 3; ++c) {
+    for (int y = 0; y < side; ++y) {
+      std::copy_n(image[c].at(x0, y0 + y), side, middle[c].row(y));
+    }
+  }
+  return middle;
+}
+
+Planes<3> read_image(const std::string& name) {
+  return is_ldr_name(name) ? read_ldr_image(name) : ExrReader(name).read_planes<3>("");
+}
+
+PyramidExample color_example(const Planes<3>& image, float sigma, int radius) {
+  const Extent extent = image[0].extent();
+  Plane<float> attributes(extent, 3), weight(extent);
+  weight.fill(1.0f);
+  for (int y = 0; y < extent.height; ++y) {
+    for (int x = 0; x < extent.width; ++x) {
+      for (std::size_t c = 0; c < 3; ++c) attributes.at(x, y)[c] = image[c](x, y);
+    }
+  }
+  const ColorEdge edge{sigma, static_cast<float>(radius)};
+  return {edge, {attributes, image, weight}};
+}
+
+PyramidExample frame_example(const std::string& scene_name, int radius, int side) {
+  Scene scene = make_builtin_scene(scene_name);
+  // The middle of a picture as large as people render, so that surfaces span as many pixels.
+  const Extent extent{kFrameParts * side, kFrameParts * side};
+  const auto animation = make_flythrough(scene, Perturbation::kNone, extent);
+  LiveSource source(scene, *animation, {.extent = extent, .spp = 1, .direct_spp = 1}, {kFrame});
+  Frame frame;
+  if (!source.next(frame)) throw std::logic_error("a source of one frame has none");
+  Plane<float> attributes({side, side}, GlobalIlluminationEdge::kAttributes);
+  Plane<float> weight(attributes.extent());
+  Planes<3> light = make_planes<3>(attributes.extent());
+  const int margin = (extent.width - side) / 2;
+  for (int y = 0; y < side; ++y) {
+    for (int x = 0; x < side; ++x) {
+      const int fx = margin + x, fy = margin + y;
+      if (frame.surface.id(fx, fy) == 0) continue;
+      weight(x, y) = 1.0f;
+      for (std::size_t c = 0; c < 3; ++c) {
+        attributes.at(x, y)[c] = frame.surface.normal[c](fx, fy);
+        const float sample = frame.indirect[c](fx, fy);
+        light[c](x, y) = sample / (1.0f + sample);
+      }
+      attributes.at(x, y)[3] = frame.surface.depth(fx, fy);
+    }
+  }
+  GlobalIlluminationEdge edge;
+  edge.blur_radius = static_cast<float>(radius);
+  return {edge, {attributes, light, weight}};
+}
+
+PyramidWeights train_octave(const TrainPyramidOptions& options, int radius,
+                            const PyramidWeights& start, const std::function<bool()>& go_on,
+                            TrainedRadius& report) {
+  const int side = radius <= kLargestSmallRadius ? kSmallSide : kLargeSide;
+  const std::vector<PyramidExample> examples = make_pyramid_examples(options, radius, side);
+  std::vector<PassGradient> unused(start.size());
+  report.radius = radius;
+  for (const PyramidExample& example : examples) {
+    report.untrained_loss +=
+        example.loss(untrained_pyramid_weights(static_cast<float>(radius)), 1.0, unused).total() /
+        static_cast<double>(examples.size());
+  }
+  bool stopped = false;
+  const TrainingResult result = train_pyramid(examples, start, options.training, [&](int, double) {
+    stopped = !go_on();
+    return !stopped;
+  });
+  if (stopped) throw std::runtime_error("training was interrupted: no table is written");
+  report.trained_loss = result.last_loss;
+  return result.weights;
+}
+
+}  // namespace
+
+void TrainPyramidOptions::validate() const {
+  EL_CHECK(painted >= 0 && painted <= 64, "painted {}: expected 0 to 64 pictures", painted);
+  EL_CHECK(painted > 0 || !images.empty() || !scenes.empty(),
+           "nothing to learn from: no painted picture, no image, no scene");
+  training.validate();
+}
+
+std::vector<PyramidExample> make_pyramid_examples(const TrainPyramidOptions& options, int radius,
+                                                  int side) {
+  std::vector<PyramidExample> examples;
+  const auto add = [&](const Planes<3>& image) {
+    examples.push_back(
+        color_example(image, kColorSigmas[examples.size() % kColorSigmas.size()], radius));
+  };
+  for (int i = 0; i < options.painted; ++i) {
+    add(paint_training_image({side, side}, static_cast<std::uint32_t>(i)));
+  }
+  for (const std::string& name : options.images) add(crop_middle(read_image(name), side, name));
+  for (const std::string& name : options.scenes) {
+    examples.push_back(frame_example(name, radius, side));
+  }
+  return examples;
+}
+
+PyramidTable train_pyramid_table(const TrainPyramidOptions& options,
+                                 const std::function<void(const TrainedRadius&)>& done,
+                                 const std::function<bool()>& go_on) {
+  options.validate();
+  std::vector<PyramidWeights> octaves;
+  for (int k = 0; k < kPyramidOctaves; ++k) {
+    const int radius = 1 << k;
+    const PyramidWeights start =
+        k == 0 ? untrained_pyramid_weights(1.0f) : start_for_twice_the_radius(octaves.back());
+    TrainedRadius report;
+    octaves.push_back(train_octave(options, radius, start, go_on, report));
+    done(report);
+  }
+  return PyramidTable(std::move(octaves));
+}
+
+}  // namespace eigenlight

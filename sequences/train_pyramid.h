@@ -1,0 +1,42 @@
+// Training of the pyramid filter's weights: from images to a table.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "spatial/training/pyramid_trainer.h"
+
+namespace eigenlight {
+
+struct TrainPyramidOptions {
+  int painted = 8;                  ///< [0, 64] pictures painted by code
+  std::vector<std::string> images;  ///< EXR, PNG or JPEG files, taken in their middle
+  /// Built-in scenes of which one noisy frame each is rendered, for edges of geometry.
+  std::vector<std::string> scenes{"atrium", "cornell", "gallery"};
+  TrainingOptions training;
+
+  void validate() const;  ///< throws std::invalid_argument naming the field
+};
+
+/// What became of one radius.
+struct TrainedRadius {
+  int radius = 0;
+  double untrained_loss = 0.0;  ///< of section 5.1(e)
+  double trained_loss = 0.0;
+};
+
+/// Images of `side` x `side` pixels, each with an edge-stopping function of `radius`: pictures and
+/// files by their own colors, with deviations of 0.05, 0.1 and 0.2 by turns ("each with different
+/// deviations", section 3.3.2); frames by normals and depth, their light at 1 sample a pixel mapped
+/// to x / (1 + x). Throws std::runtime_error naming a file that cannot be read or is smaller.
+[[nodiscard]] std::vector<PyramidExample> make_pyramid_examples(const TrainPyramidOptions& options,
+                                                                int radius, int side);
+
+/// Trains one octave after the other, each from the one before. `done` hears of each radius;
+/// `go_on` is asked after each step, and training ends with std::runtime_error when it says no.
+[[nodiscard]] PyramidTable train_pyramid_table(
+    const TrainPyramidOptions& options, const std::function<void(const TrainedRadius&)>& done,
+    const std::function<bool()>& go_on);
+
+}  // namespace eigenlight
