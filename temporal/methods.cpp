@@ -9,6 +9,7 @@
 #include "temporal/baselines/bmfr.h"
 #include "temporal/baselines/chen2012.h"
 #include "temporal/baselines/hems2010.h"
+#include "temporal/baselines/meyer2006.h"
 #include "temporal/baselines/running_mean.h"
 #include "temporal/baselines/svgf.h"
 #include "temporal/denoiser.h"
@@ -65,6 +66,8 @@ const std::vector<Method>& methods() {
        "Koskela et al. 2019", make<Bmfr>},
       {"hems2010", "weighted sum of 16 reprojected frames, similar colors weigh more",
        "Herzog, Eisemann, Myszkowski and Seidel 2010", make<Hems2010>},
+      {"meyer2006", "offline: PCA of the whole sequence, read ahead and held in memory",
+       "Meyer and Anderson 2006", make<Meyer2006>},
       {"mean", "reprojected running mean of up to 32 frames", "", make<RunningMean>},
       {"guided", "each frame through the guided filter: normals and depth", "Bauszat et al. 2011",
        [](const DenoiserOptions& options) {

@@ -28,7 +28,7 @@ float difference(const glm::vec3& a, const glm::vec3& b) {
 
 void HemsOptions::validate() const {
   EL_CHECK(frames >= 0 && frames <= 16, "frames {}: expected 0 to 16", frames);
-  EL_CHECK(radius >= 0 && radius <= 8, "radius {}: expected 0 to 8 pixels", radius);
+  EL_CHECK(radius >= 0 && radius <= 16, "radius {}: expected 0 to 16 pixels", radius);
   EL_CHECK(color > 0.0f && color <= 100.0f, "color {}: expected (0, 100]", color);
   EL_CHECK(decay > 0.0f && decay <= 1.0f, "decay {}: expected (0, 1]", decay);
   taps.validate();

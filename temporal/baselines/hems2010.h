@@ -11,8 +11,8 @@ namespace eigenlight {
 
 struct HemsOptions {
   int frames = 16;     ///< [0, 16] past frames
-  int radius = 2;      ///< [0, 8] pixels, of the window in space; 0: none
-  float color = 0.5f;  ///< (0, 100] difference of color, over color, at which the weight is e^-1/2
+  int radius = 8;      ///< [0, 16] pixels, of the window in space: 17 x 17; 0: none
+  float color = 0.3f;  ///< (0, 100] difference of color, over color, at which the weight is e^-1/2
   float decay = 1.0f;  ///< (0, 1] factor on the weight for each frame of age
   TapOptions taps = {};
 
