@@ -20,7 +20,7 @@ def run(program, folder):
     command = [program, "--benchmark_min_time=0.001", f"--benchmark_out={path}",
                "--benchmark_out_format=json"]
     if "render" in path.name:
-        command.append("--benchmark_filter=procedural")
+        command.append("--benchmark_filter=procedural|antialias")
     subprocess.run(command, env=environment, stdout=subprocess.DEVNULL, check=True)
     return path
 
