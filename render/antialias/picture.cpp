@@ -1,7 +1,7 @@
 #include "render/antialias/picture.h"
 
-#include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <vector>
 
