@@ -11,8 +11,16 @@
 
 namespace eigenlight {
 
+/// What guides: Bauszat et al. 2011, Fig. 5 (a), (b) and (c).
+enum class Guides {
+  kGrayNormal = 1,   ///< the luminance of the normal taken as a color
+  kNormal = 3,       ///< its three components
+  kNormalDepth = 4,  ///< those and the logarithm of the depth
+};
+
 struct GuidedOptions {
-  int radius = 8;  ///< [1, 16] pixels; a window has 2 radius + 1 on a side
+  int radius = 8;  ///< [1, 32] pixels; a window has 2 radius + 1 on a side
+  Guides guides = Guides::kNormalDepth;
   /// [1e-4, 1] variance of a normal's component below which it is no edge: Bauszat 2011 takes 0.01.
   float epsilon_normal = 0.01f;
   /// [1e-4, 1] variance of log(depth) below which it is no edge: Bauszat 2011 takes 0.01 to 0.03 of
@@ -32,8 +40,8 @@ struct GuidedInputs {
 struct GuidedScratch;
 
 /// He, Sun and Tang 2010, guided by noise-free geometry as in Bauszat et al. 2011 (Eq. 6-9), with
-/// weights. With I = (normal, log depth), four guides, each window k and channel N of the signal
-/// has
+/// weights. With the guides I, at most (normal, log depth), each window k and channel N of the
+/// signal has
 ///   min over a, b of  E_k[(a . I + b - N)^2] + epsilon . a^2,   E_k[f] = sum w f / sum w,
 /// hence a = (Cov_k(I) + diag(epsilon))^-1 Cov_k(I, N) and b = E_k[N] - a . E_k[I]. At pixel p the
 /// windows around all surface pixels k within `radius` are averaged: out(p) = mean(a_k) . I_p +
@@ -44,8 +52,10 @@ struct GuidedScratch;
 /// that is finite and a depth in (0, inf). Output is 0 without surface and where no window holds a
 /// usable signal. It is linear in the signal and may thus leave its range, below 0 as well.
 ///
-/// Box sums by doubling: additions grow with the logarithm of the radius, and a sum has the values
-/// of its own window only, so that nothing drifts and no firefly leaves a trace.
+/// A sum has the values of its own window only, so that nothing drifts and no firefly leaves a
+/// trace: sums over rows double, those over columns are the sum of the rest of one block of
+/// 2 radius + 1 rows and of the beginning of the next (van Herk 1992, Gil and Werman 1993, who take
+/// maxima). Additions of the first grow with the logarithm of the radius, of the second not at all.
 class GuidedFilter {
  public:
   /// Throws std::invalid_argument on a bad size or option.
@@ -58,12 +68,15 @@ class GuidedFilter {
   std::int64_t process(const GuidedInputs& in, Planes<3>& out);
 
  private:
+  void plan_runs(const Plane<std::uint8_t>& wanted);
+  void add_run(const Tile& run, std::size_t first);
   [[nodiscard]] std::unique_ptr<GuidedScratch> take_scratch();
   void give_back(std::unique_ptr<GuidedScratch> scratch);
 
   GuidedOptions options_;
   TileGrid grid_;
-  std::vector<std::int64_t> skipped_;  // per tile
+  std::vector<std::uint8_t> wanted_;  // per tile
+  std::vector<Tile> runs_;            // of tiles that are filtered in one go
   std::mutex mutex_;
   std::vector<std::unique_ptr<GuidedScratch>> spare_;  // one for each thread that has been here
 };

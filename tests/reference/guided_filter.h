@@ -8,13 +8,13 @@
 
 namespace eigenlight::reference {
 
-using Guide = Eigen::Vector4d;
+using Guide = Eigen::VectorXd;
 using Light = Eigen::Vector3d;
 
 /// F = slope I + offset in the window around one pixel; `valid` if it counts in averages.
 struct WindowFit {
   bool valid = false;
-  Eigen::Matrix<double, 3, 4> slope = Eigen::Matrix<double, 3, 4>::Zero();
+  Eigen::Matrix<double, 3, Eigen::Dynamic> slope;
   Light offset = Light::Zero();
 };
 
@@ -25,10 +25,13 @@ inline bool has_surface(const Frame& frame, int x, int y) {
   return s.id(x, y) != 0 && s.depth(x, y) > 0.0f && std::isfinite(s.depth(x, y)) && normal;
 }
 
-inline Guide guide_at(const Frame& frame, int x, int y) {
+inline Guide guide_at(const Frame& frame, Guides guides, int x, int y) {
   const auto& s = frame.surface;
-  return Guide(s.normal[0](x, y), s.normal[1](x, y), s.normal[2](x, y),
-               std::log(static_cast<double>(s.depth(x, y))));
+  Guide all(4);
+  all << s.normal[0](x, y), s.normal[1](x, y), s.normal[2](x, y),
+      std::log(static_cast<double>(s.depth(x, y)));
+  if (guides != Guides::kGrayNormal) return all.head(static_cast<int>(guides));
+  return Guide::Constant(1, all.head(3).dot(Eigen::Vector3d(0.2126, 0.7152, 0.0722)));
 }
 
 inline double usable_weight(const GuidedInputs& in, int x, int y) {
@@ -47,13 +50,14 @@ void for_window(Extent extent, glm::ivec2 center, int radius, const Visit& visit
   }
 }
 
-/// Bauszat 2011, Eq. 8 and 9, with weighted expectations and four guides.
+/// Bauszat 2011, Eq. 8 and 9, with weighted expectations.
 inline WindowFit fit_window(const GuidedInputs& in, const GuidedOptions& options,
                             glm::ivec2 center) {
   WindowFit fit;
   if (!has_surface(in.guides, center.x, center.y)) return fit;
   double sum = 0.0;
-  Guide mean = Guide::Zero();
+  const int n = static_cast<int>(options.guides);
+  Guide mean = Guide::Zero(n);
   Light light = Light::Zero();
   const auto light_at = [&](int x, int y) {
     return Light(in.signal[0](x, y), in.signal[1](x, y), in.signal[2](x, y));
@@ -61,26 +65,25 @@ inline WindowFit fit_window(const GuidedInputs& in, const GuidedOptions& options
   const auto each = [&](const auto& visit) {
     for_window(in.weight.extent(), center, options.radius, [&](int x, int y) {
       const double w = usable_weight(in, x, y);
-      if (w > 0.0) visit(w, guide_at(in.guides, x, y), light_at(x, y));
+      if (w > 0.0) visit(w, guide_at(in.guides, options.guides, x, y), light_at(x, y));
     });
   };
-  each([&](double w, const Guide& guide, const Light& n) {
+  each([&](double w, const Guide& guide, const Light& light_here) {
     sum += w;
     mean += w * guide;
-    light += w * n;
+    light += w * light_here;
   });
   if (sum == 0.0) return fit;
   mean /= sum;
   light /= sum;
-  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
-  Eigen::Matrix<double, 4, 3> cross = Eigen::Matrix<double, 4, 3>::Zero();
-  each([&](double w, const Guide& guide, const Light& n) {
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(n, n), cross = Eigen::MatrixXd::Zero(n, 3);
+  each([&](double w, const Guide& guide, const Light& light_here) {
     covariance += w / sum * (guide - mean) * (guide - mean).transpose();
-    cross += w / sum * (guide - mean) * (n - light).transpose();
+    cross += w / sum * (guide - mean) * (light_here - light).transpose();
   });
-  const double normal = static_cast<double>(options.epsilon_normal);
-  covariance.diagonal() +=
-      Guide(normal, normal, normal, static_cast<double>(options.epsilon_depth));
+  for (int i = 0; i < n; ++i) {
+    covariance(i, i) += static_cast<double>(i < 3 ? options.epsilon_normal : options.epsilon_depth);
+  }
   fit.slope = covariance.ldlt().solve(cross).transpose();
   fit.offset = light - fit.slope * mean;
   fit.valid = true;
@@ -110,7 +113,7 @@ inline Planes<3> guided_filter(const GuidedInputs& in, const GuidedOptions& opti
       for_window(extent, {x, y}, options.radius, [&](int i, int j) {
         const WindowFit& fit = fits[static_cast<std::size_t>(j * extent.width + i)];
         if (!fit.valid) return;
-        sum += fit.slope * guide_at(in.guides, x, y) + fit.offset;
+        sum += fit.slope * guide_at(in.guides, options.guides, x, y) + fit.offset;
         count += 1.0;
       });
       if (count == 0.0) continue;

@@ -9,6 +9,7 @@
 
 #include "frame/random.h"
 #include "tests/reference/guided_filter.h"
+#include "tests/support/targets.h"
 
 namespace eigenlight {
 namespace {
@@ -107,10 +108,40 @@ INSTANTIATE_TEST_SUITE_P(All, GuidedFilterSizes,
                            return fmt::format("{}x{}", size.param.width, size.param.height);
                          });
 
-TEST(GuidedFilter, AgreesWithItsTwinAtTheWidestRadiusAcrossTiles) {
+TEST(GuidedFilter, AgreesWithItsTwinAtWideRadiiAcrossTilesAndStrips) {
   const Case c({140, 80});
   const GuidedOptions options{.radius = 16};
   EXPECT_LT(distance(c.filter(options), reference::guided_filter(c.inputs(), options)), 2e-5);
+  const Case small({150, 20});
+  const GuidedOptions widest{.radius = 32};
+  EXPECT_LT(distance(small.filter(widest), reference::guided_filter(small.inputs(), widest)), 2e-5);
+}
+
+TEST(GuidedFilter, AgreesWithItsTwinWithFewerGuidesOnEveryTarget) {
+  const Case c({90, 40});
+  for (const Guides guides : {Guides::kGrayNormal, Guides::kNormal, Guides::kNormalDepth}) {
+    const GuidedOptions options{.radius = 5, .guides = guides};
+    const Planes<3> twin = reference::guided_filter(c.inputs(), options);
+    for_each_target(
+        [&] { EXPECT_LT(distance(c.filter(options), twin), 2e-5) << static_cast<int>(guides); });
+  }
+}
+
+// Only depth tells the box from the wall behind it, if their normals are the same.
+TEST(GuidedFilter, DepthIsAGuideOnlyWithFourOfThem) {
+  Case c({96, 64});
+  c.flat_wall();
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 48; ++x) {
+      c.frame.surface.depth(x, y) = 2.0f;
+      for (auto& plane : c.signal) plane(x, y) = 3.0f;
+    }
+    for (int x = 48; x < 96; ++x) {
+      for (auto& plane : c.signal) plane(x, y) = 1.0f;
+    }
+  }
+  EXPECT_GT(c.filter()[0](47, 32), 2.8f);
+  EXPECT_NEAR(c.filter({.guides = Guides::kNormal})[0](47, 32), 2.0f, 0.1f);
 }
 
 TEST(GuidedFilter, WhatHasNoWeightTouchesNothing) {
@@ -248,6 +279,28 @@ TEST(GuidedFilter, LeavesTilesAloneThatNobodyWants) {
   EXPECT_NE(out[0](70, 66), -7.0f);
 }
 
+// Which tiles are filtered in one go changes no bit.
+TEST(GuidedFilter, GivesTheSameBitsWhateverElseIsWanted) {
+  for (const int radius : {3, 12}) {
+    const GuidedOptions options{.radius = radius};
+    Case c({330, 270});
+    const Planes<3> all = c.filter(options);
+    c.wanted.fill(0);
+    for (int y = 0; y < 270; y += 64) {
+      for (int x = 0; x < 330; x += 64) c.wanted(x, y) = random(x, y, 70) < 0.5f ? 1 : 0;
+    }
+    Planes<3> some = make_planes<3>(c.extent);
+    GuidedFilter filter(c.extent, options);
+    EXPECT_GT(filter.process(c.inputs(), some), 64 * 64);
+    for (int y = 0; y < 270; ++y) {
+      for (int x = 0; x < 330; ++x) {
+        const bool wanted = c.wanted(x / 64 * 64, y / 64 * 64) != 0;
+        ASSERT_EQ(some[2](x, y), wanted ? all[2](x, y) : 0.0f) << x << ", " << y;
+      }
+    }
+  }
+}
+
 TEST(GuidedFilter, GivesTheSameBitsOnAnyNumberOfThreadsAndAgain) {
   const Case c({191, 107});
   set_thread_count(1);
@@ -267,7 +320,8 @@ TEST(GuidedFilter, GivesTheSameBitsOnAnyNumberOfThreadsAndAgain) {
 
 TEST(GuidedFilter, RefusesBadOptionsAndSizes) {
   EXPECT_THROW(GuidedFilter({8, 8}, {.radius = 0}), std::invalid_argument);
-  EXPECT_THROW(GuidedFilter({8, 8}, {.radius = 17}), std::invalid_argument);
+  EXPECT_THROW(GuidedFilter({8, 8}, {.radius = 33}), std::invalid_argument);
+  EXPECT_THROW(GuidedFilter({8, 8}, {.guides = Guides{2}}), std::invalid_argument);
   EXPECT_THROW(GuidedFilter({8, 8}, {.epsilon_normal = 0.0f}), std::invalid_argument);
   EXPECT_THROW(GuidedFilter({8, 8}, {.epsilon_depth = kNan}), std::invalid_argument);
   EXPECT_THROW(GuidedFilter({0, 8}, {}), std::invalid_argument);

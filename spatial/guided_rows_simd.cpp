@@ -1,0 +1,123 @@
+#include <algorithm>
+#include <cstring>
+#include <limits>
+
+#include "spatial/guided_filter_kernel.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "spatial/guided_rows_simd.cpp"
+// Not in alphabetical order: foreach_target.h has to come first.
+// clang-format off
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+#include <hwy/contrib/math/math-inl.h>
+// clang-format on
+
+HWY_BEFORE_NAMESPACE();
+namespace eigenlight::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using F = hn::CappedTag<float, 16>;
+using VF = hn::Vec<F>;
+
+// One row of a plane, zero outside the image and in the room behind the row.
+template <typename T>
+void CopyRow(const Plane<T>& plane, const GuidedColumns& columns, int y, Plane<T>& to) {
+  std::fill_n(to.row(0), to.width(), T{0});
+  if (y < 0 || y >= plane.height()) return;
+  const int x0 = std::max(columns.left, 0);
+  const int x1 = std::min(columns.left + columns.width, plane.width());
+  if (x0 >= x1) return;
+  std::memcpy(to.at(x0 - columns.left, 0), plane.at(x0, y),
+              static_cast<std::size_t>(x1 - x0) * sizeof(T));
+}
+
+struct RowMasks {
+  hn::Mask<F> surface, used;
+};
+
+RowMasks MasksAt(const GuidedRow& row, int x) {
+  const F d;
+  const hn::RebindToUnsigned<F> du;
+  const VF zero = hn::Zero(d), largest = hn::Set(d, std::numeric_limits<float>::max());
+  const auto load = [&](const Plane<float>& plane) { return hn::Load(d, plane.row(0) + x); };
+  const auto finite = [&](VF v) { return hn::Le(hn::Abs(v), largest); };
+  const auto id = hn::Load(du, row.id.row(0) + x);
+  const VF depth = load(row.depth), weight = load(row.weight);
+  RowMasks masks;
+  masks.surface = hn::RebindMask(d, hn::Ne(id, hn::Zero(du)));
+  masks.surface = hn::And(masks.surface, hn::And(hn::Gt(depth, zero), finite(depth)));
+  for (const auto& plane : row.normal) {
+    masks.surface = hn::And(masks.surface, finite(load(plane)));
+  }
+  masks.used = hn::And(masks.surface, hn::And(hn::Gt(weight, zero), finite(weight)));
+  for (const auto& plane : row.signal) masks.used = hn::And(masks.used, finite(load(plane)));
+  return masks;
+}
+
+VF GuideAt(const GuidedWork& work, const GuidedRow& row, int index, int x) {
+  const F d;
+  const auto normal = [&](std::size_t c) { return hn::Load(d, row.normal[c].row(0) + x); };
+  if (work.options.guides == Guides::kGrayNormal) {
+    return hn::MulAdd(
+        hn::Set(d, 0.2126f), normal(0),
+        hn::MulAdd(hn::Set(d, 0.7152f), normal(1), hn::Mul(hn::Set(d, 0.0722f), normal(2))));
+  }
+  if (index < 3) return normal(static_cast<std::size_t>(index));
+  // 1e-38: lanes that do not count must not cost time as NaN or denormals.
+  const VF depth = hn::Max(hn::Load(d, row.depth.row(0) + x), hn::Set(d, 1e-38f));
+  return hn::Sub(hn::Log(d, depth), hn::Set(d, work.log_depth));
+}
+
+// Turns a row of raw values into guides, weights and weighted signals; what must not count is 0.
+void MaskRow(const GuidedWork& work, int width, int y, GuidedScratch& s) {
+  const F d;
+  const int guides = s.weighted_guide.height();
+  const int first = block_slot(y, s.windows.terms) * (guides + 1);
+  for (int x = 0; x < width; x += static_cast<int>(hn::Lanes(d))) {
+    const RowMasks masks = MasksAt(s.row, x);
+    const VF weight = hn::IfThenElseZero(masks.used, hn::Load(d, s.row.weight.row(0) + x));
+    for (int i = 0; i < guides; ++i) {
+      const VF guide = hn::IfThenElseZero(masks.surface, GuideAt(work, s.row, i, x));
+      hn::Store(guide, d, s.guides.row(first + i) + x);
+      hn::Store(hn::Mul(guide, weight), d, s.weighted_guide.row(i) + x);
+    }
+    hn::Store(hn::IfThenElseZero(masks.surface, hn::Set(d, 1.0f)), d,
+              s.guides.row(first + guides) + x);
+    for (auto& plane : s.row.signal) {
+      const VF signal = hn::IfThenElseZero(masks.used, hn::Load(d, plane.row(0) + x));
+      hn::Store(hn::Mul(weight, signal), d, plane.row(0) + x);
+    }
+    hn::Store(weight, d, s.row.weight.row(0) + x);
+  }
+}
+
+void LoadRow(const GuidedWork& work, const GuidedColumns& columns, int y, GuidedScratch& s) {
+  const GBuffer& surface = work.in.guides.surface;
+  CopyRow(surface.id, columns, y, s.row.id);
+  CopyRow(surface.depth, columns, y, s.row.depth);
+  CopyRow(work.in.weight, columns, y, s.row.weight);
+  for (std::size_t c = 0; c < 3; ++c) {
+    CopyRow(surface.normal[c], columns, y, s.row.normal[c]);
+    CopyRow(work.in.signal[c], columns, y, s.row.signal[c]);
+  }
+  MaskRow(work, columns.width, y, s);
+}
+
+}  // namespace
+}  // namespace eigenlight::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace eigenlight {
+
+HWY_EXPORT(LoadRow);
+
+void guided_load_row(const GuidedWork& work, const GuidedColumns& columns, int y,
+                     GuidedScratch& scratch) {
+  HWY_DYNAMIC_DISPATCH(LoadRow)(work, columns, y, scratch);
+}
+
+}  // namespace eigenlight
+#endif
