@@ -9,13 +9,13 @@
 namespace eigenlight {
 
 struct AtrousFilterOptions {
-  int passes = 5;  ///< [1, 6]; pass i reaches 2 * 2^i pixels
+  int passes = 4;  ///< [1, 6]; pass i reaches 2 * 2^i pixels
   /// (0, 1e6] difference of colors, over the frame's mean luminance, that weighs a neighbor by 1/e
   /// in the first pass.
-  float sigma_color = 4.0f;
-  float sigma_normal = 0.3f;  ///< (0, 10] distance of two unit normals that does
+  float sigma_color = 64.0f;
+  float sigma_normal = 0.1f;  ///< (0, 10] distance of two unit normals that does
   /// (0, 10] of the depth: distance of two points that does.
-  float sigma_position = 0.1f;
+  float sigma_position = 0.03f;
 
   void validate() const;  ///< throws std::invalid_argument naming the field
 };

@@ -9,11 +9,11 @@ namespace eigenlight {
 struct CrossBilateralOptions {
   int radius = 16;  ///< [1, 32] pixels; a window has 2 radius + 1 on a side
   /// (0, 10] distance of two unit normals that weighs a neighbor by exp(-1/2).
-  float sigma_normal = 0.2f;
+  float sigma_normal = 0.4f;
   /// (0, 10] of the depth: distance off the pixel's tangent plane that does.
   float sigma_plane = 0.02f;
   /// (0, 10] distance of two albedos that does.
-  float sigma_albedo = 0.2f;
+  float sigma_albedo = 0.5f;
 
   void validate() const;  ///< throws std::invalid_argument naming the field
 };

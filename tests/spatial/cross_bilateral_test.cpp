@@ -60,7 +60,7 @@ TEST(CrossBilateral, EveryGuideIsAnEdge) {
         for (auto& plane : c.signal) plane(x, y) = 3.0f;
       }
     }
-    CrossBilateral filter(c.extent(), {.radius = 8});
+    CrossBilateral filter(c.extent(), {.radius = 8, .sigma_normal = 0.2f, .sigma_albedo = 0.2f});
     const Planes<3> out = c.run(filter);
     EXPECT_NEAR(out[0](23, 12), 1.0f, 1e-4f) << guide;
     EXPECT_NEAR(out[0](24, 12), 3.0f, 1e-4f) << guide;

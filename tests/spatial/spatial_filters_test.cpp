@@ -140,7 +140,10 @@ TEST_P(SpatialFilters, RefusesOtherSizesAndItsOwnInput) {
 INSTANTIATE_TEST_SUITE_P(
     All, SpatialFilters,
     testing::Values(kind<CrossBilateral>("cross_bilateral", CrossBilateralOptions{.radius = 8}),
-                    kind<AtrousFilter>("atrous", AtrousFilterOptions{.passes = 4}),
+                    kind<AtrousFilter>("atrous", AtrousFilterOptions{.passes = 4,
+                                                                     .sigma_color = 4.0f,
+                                                                     .sigma_normal = 0.3f,
+                                                                     .sigma_position = 0.1f}),
                     kind<GuidedSpatial>("guided", GuidedOptions{.radius = 8})),
     [](const auto& chosen) { return chosen.param.name; });
 
