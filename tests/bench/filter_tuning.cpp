@@ -71,7 +71,7 @@ void add_atrous(std::vector<Setting>& list) {
     add<AtrousFilter>(list, fmt::format("atrous passes {}", passes),
                       AtrousFilterOptions{.passes = passes});
   }
-  vary("sigma_color", &AtrousFilterOptions::sigma_color, {8.0f, 16.0f, 32.0f, 64.0f, 1e6f});
+  vary("sigma_color", &AtrousFilterOptions::sigma_color, {16.0f, 64.0f, 256.0f, 1024.0f, 1e6f});
   vary("sigma_normal", &AtrousFilterOptions::sigma_normal, {0.05f, 0.1f, 0.2f});
   vary("sigma_position", &AtrousFilterOptions::sigma_position, {0.01f, 0.02f, 0.03f, 0.06f, 0.1f});
 }
