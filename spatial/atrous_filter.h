@@ -13,9 +13,9 @@ struct AtrousFilterOptions {
   /// (0, 1e6] difference of colors, over the frame's mean luminance, that weighs a neighbor by 1/e
   /// in the first pass.
   float sigma_color = 1024.0f;
-  float sigma_normal = 0.1f;  ///< (0, 10] distance of two unit normals that does
+  float sigma_normal = 0.2f;  ///< (0, 10] distance of two unit normals that does
   /// (0, 10] of the depth: distance of two points that does.
-  float sigma_position = 0.03f;
+  float sigma_position = 0.06f;
 
   void validate() const;  ///< throws std::invalid_argument naming the field
 };

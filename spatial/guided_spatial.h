@@ -6,6 +6,9 @@
 
 namespace eigenlight {
 
+/// What suits single frames; the values and what else was tried are in spatial/README.md.
+[[nodiscard]] inline GuidedOptions guided_alone() { return {.epsilon_depth = 0.0005f}; }
+
 /// Bauszat, Eisemann and Magnor 2011, section 3.3: every pixel of each frame through GuidedFilter
 /// (which see), with the weights of the inputs.
 class GuidedSpatial final : public SpatialFilter {

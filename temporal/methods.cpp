@@ -71,7 +71,7 @@ const std::vector<Method>& methods() {
       {"mean", "reprojected running mean of up to 32 frames", "", make<RunningMean>},
       {"guided", "each frame through the guided filter: normals and depth", "Bauszat et al. 2011",
        [](const DenoiserOptions& options) {
-         return through<GuidedSpatial>(options, "guided", GuidedOptions{});
+         return through<GuidedSpatial>(options, "guided", guided_alone());
        }},
       {"atrous", "each frame through edge-avoiding wavelets: color, normals, positions",
        "Dammertz et al. 2010",

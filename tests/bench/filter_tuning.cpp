@@ -49,7 +49,7 @@ void add_cross_bilateral(std::vector<Setting>& list) {
       add<CrossBilateral>(list, fmt::format("cross-bilateral {} {}", name, value), options);
     }
   };
-  for (const int radius : {8, 12, 16, 24, 32}) {
+  for (const int radius : {8, 16, 32}) {
     add<CrossBilateral>(list, fmt::format("cross-bilateral radius {}", radius),
                         CrossBilateralOptions{.radius = radius});
   }
@@ -67,31 +67,35 @@ void add_atrous(std::vector<Setting>& list) {
       add<AtrousFilter>(list, fmt::format("atrous {} {}", name, value), options);
     }
   };
-  for (const int passes : {3, 4, 5, 6}) {
+  for (const int passes : {3, 4, 6}) {
     add<AtrousFilter>(list, fmt::format("atrous passes {}", passes),
                       AtrousFilterOptions{.passes = passes});
   }
-  vary("sigma_color", &AtrousFilterOptions::sigma_color, {16.0f, 64.0f, 256.0f, 1024.0f, 1e6f});
-  vary("sigma_normal", &AtrousFilterOptions::sigma_normal, {0.05f, 0.1f, 0.2f});
-  vary("sigma_position", &AtrousFilterOptions::sigma_position, {0.01f, 0.02f, 0.03f, 0.06f, 0.1f});
+  vary("sigma_color", &AtrousFilterOptions::sigma_color, {16.0f, 64.0f, 1024.0f, 1e6f});
+  vary("sigma_normal", &AtrousFilterOptions::sigma_normal, {0.1f, 0.2f, 0.4f});
+  vary("sigma_position", &AtrousFilterOptions::sigma_position, {0.02f, 0.06f, 0.2f});
 }
 
 void add_guided(std::vector<Setting>& list) {
-  for (const int radius : {4, 6, 8, 12, 16, 24}) {
-    add<GuidedSpatial>(list, fmt::format("guided radius {}", radius),
-                       GuidedOptions{.radius = radius});
+  const auto add_one = [&](const std::string& name, auto set) {
+    GuidedOptions options = guided_alone();
+    set(options);
+    add<GuidedSpatial>(list, "guided " + name, options);
+  };
+  for (const int radius : {4, 6, 8, 12, 24}) {
+    add_one(fmt::format("radius {}", radius), [=](GuidedOptions& o) { o.radius = radius; });
   }
   for (const Guides guides : {Guides::kGrayNormal, Guides::kNormal, Guides::kNormalDepth}) {
-    add<GuidedSpatial>(list, fmt::format("guided guides {}", static_cast<int>(guides)),
-                       GuidedOptions{.guides = guides});
+    add_one(fmt::format("guides {}", static_cast<int>(guides)),
+            [=](GuidedOptions& o) { o.guides = guides; });
   }
   for (const float epsilon : {0.0025f, 0.01f, 0.04f}) {
-    add<GuidedSpatial>(list, fmt::format("guided epsilon_normal {}", epsilon),
-                       GuidedOptions{.epsilon_normal = epsilon});
+    add_one(fmt::format("epsilon_normal {}", epsilon),
+            [=](GuidedOptions& o) { o.epsilon_normal = epsilon; });
   }
-  for (const float epsilon : {0.0005f, 0.001f, 0.002f, 0.005f, 0.02f}) {
-    add<GuidedSpatial>(list, fmt::format("guided epsilon_depth {}", epsilon),
-                       GuidedOptions{.epsilon_depth = epsilon});
+  for (const float epsilon : {0.0002f, 0.0005f, 0.002f, 0.02f}) {
+    add_one(fmt::format("epsilon_depth {}", epsilon),
+            [=](GuidedOptions& o) { o.epsilon_depth = epsilon; });
   }
 }
 
