@@ -112,7 +112,7 @@ class Runner:
                 except subprocess.TimeoutExpired:
                     pass
         except KeyboardInterrupt:
-            os.killpg(process.pid, signal.SIGINT)
+            os.killpg(process.pid, signal.SIGTERM)
             process.wait()
             raise
         finally:
