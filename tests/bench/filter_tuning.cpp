@@ -49,7 +49,7 @@ void add_cross_bilateral(std::vector<Setting>& list) {
       add<CrossBilateral>(list, fmt::format("cross-bilateral {} {}", name, value), options);
     }
   };
-  for (const int radius : {8, 16, 32}) {
+  for (const int radius : {8, 16, 24, 32}) {
     add<CrossBilateral>(list, fmt::format("cross-bilateral radius {}", radius),
                         CrossBilateralOptions{.radius = radius});
   }
