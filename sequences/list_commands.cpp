@@ -30,4 +30,13 @@ void list_methods(std::ostream& out) {
       kReferenceMethod, kNameWidth, kReferenceSpp);
 }
 
+void list_parts(std::ostream& out) {
+  for (const Method& method : methods()) {
+    if (!method.parts.empty()) out << method.name << '\n';
+    for (const Part& part : method.parts) {
+      out << fmt::format("  {:<{}}{}\n", part.name, kNameWidth, part.what);
+    }
+  }
+}
+
 }  // namespace eigenlight

@@ -1,4 +1,4 @@
-// `eigenlight scenes` and `eigenlight methods`.
+// `eigenlight scenes` and `eigenlight methods [--parts]`.
 #pragma once
 
 #include <ostream>
@@ -10,5 +10,8 @@ void list_scenes(std::ostream& out);
 
 /// Methods, one line each, with the paper they come from.
 void list_methods(std::ostream& out);
+
+/// Each method that has parts to turn off, and what happens without each of them, one line a part.
+void list_parts(std::ostream& out);
 
 }  // namespace eigenlight

@@ -36,6 +36,7 @@ RunDescription describe(const RenderSettings& settings, const RenderPlan& plan,
   run.direct_spp = plan.render.direct_spp;
   run.bounces = plan.render.bounces;
   run.method = plan.method;
+  run.without = fmt::format("{}", fmt::join(plan.without, ","));
   run.bases = plan.bases;
   run.seed = plan.render.seed;
   run.perturb = plan.perturb;
@@ -50,6 +51,7 @@ std::vector<ExrAttribute> file_attributes(const RunDescription& run) {
   return {{"Software", "eigenlight " EIGENLIGHT_VERSION},
           {"eigenlight.scene", run.scene},
           {"eigenlight.method", run.method},
+          {"eigenlight.without", run.without},
           {"eigenlight.bases", run.bases},
           {"eigenlight.spp", run.spp},
           {"eigenlight.bounces", run.bounces},
@@ -123,7 +125,7 @@ int RenderJob::run() {
   Scene scene = load_scene_and_say();
   const RunDescription description = describe(settings_, plan_, scene);
   const auto animation = make_flythrough(scene, plan_.perturbation, plan_.render.extent);
-  denoiser_ = make_denoiser(plan_.denoiser, {plan_.render.extent, plan_.bases});
+  denoiser_ = make_denoiser(plan_.denoiser, {plan_.render.extent, plan_.bases, plan_.without});
   directory_ = std::make_unique<RunDirectory>(settings_.directory, to_json_text(description));
   if (settings_.resume) {
     position_ = directory_->resume(plan_.frames, *denoiser_);

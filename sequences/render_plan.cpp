@@ -7,6 +7,7 @@
 #include <charconv>
 
 #include "sequences/frame_range.h"
+#include "sequences/split_list.h"
 #include "temporal/denoiser.h"
 
 namespace eigenlight {
@@ -20,22 +21,6 @@ constexpr std::uint32_t kReferenceSeeds = 0x80000000U;
 // Direct light has far less noise than indirect light, and error is measured on the latter: eight
 // times the default is enough for a picture to look at.
 constexpr int kReferenceDirectSpp = 64;
-
-Extent parse_size(std::string_view text) {
-  Extent extent;
-  const char* end = text.data() + text.size();
-  const auto [cross, error] = std::from_chars(text.data(), end, extent.width);
-  bool valid = error == std::errc{} && cross != end && *cross == 'x';
-  if (valid) {
-    const auto [stop, second] = std::from_chars(cross + 1, end, extent.height);
-    valid = second == std::errc{} && stop == end;
-  }
-  valid = valid && extent.width >= 1 && extent.height >= 1 && extent.width <= kMaxSide &&
-          extent.height <= kMaxSide;
-  EL_CHECK(valid, "size '{}': expected WIDTHxHEIGHT with sides of 1 to {}, such as 640x360", text,
-           kMaxSide);
-  return extent;
-}
 
 // Refuses early what would end in the kernel killing the process. Two frames, output and the
 // encoded file take about 350 bytes a pixel, a basis twice three floats.
@@ -71,6 +56,22 @@ std::string default_method() {
   return std::string(present ? kOurs : methods().front().name);
 }
 
+Extent parse_size(std::string_view text) {
+  Extent extent;
+  const char* end = text.data() + text.size();
+  const auto [cross, error] = std::from_chars(text.data(), end, extent.width);
+  bool valid = error == std::errc{} && cross != end && *cross == 'x';
+  if (valid) {
+    const auto [stop, second] = std::from_chars(cross + 1, end, extent.height);
+    valid = second == std::errc{} && stop == end;
+  }
+  valid = valid && extent.width >= 1 && extent.height >= 1 && extent.width <= kMaxSide &&
+          extent.height <= kMaxSide;
+  EL_CHECK(valid, "size '{}': expected WIDTHxHEIGHT with sides of 1 to {}, such as 640x360", text,
+           kMaxSide);
+  return extent;
+}
+
 RenderPlan make_plan(const RenderSettings& settings) {
   RenderPlan plan;
   plan.method = settings.method.empty() ? default_method() : settings.method;
@@ -84,6 +85,7 @@ RenderPlan make_plan(const RenderSettings& settings) {
   check_range("seed", settings.seed, 0, kSeeds - 1);
   check_range("threads", settings.threads, 0, 1024);
   plan.bases = settings.bases;
+  plan.without = split_list("without", settings.without);
   plan.perturbation = parse_perturbation(settings.perturb);
   plan.perturb = format_perturbation(plan.perturbation);
   plan.antialias = parse_antialias(settings.antialias);

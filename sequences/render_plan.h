@@ -20,6 +20,7 @@ struct RenderSettings {
   std::string size = "640x360";
   std::optional<int> spp;  ///< 3, or kReferenceSpp for `reference`
   std::string method;      ///< empty: default_method()
+  std::string without;     ///< parts of the method to turn off, with commas; empty: none
   int bases = 3;
   std::int64_t seed = 0;
   int bounces = 3;
@@ -42,12 +43,16 @@ struct RenderPlan {
   std::vector<int> frames;
   std::string method;    ///< as the user named it
   std::string denoiser;  ///< what does it: `noisy` for `reference`
+  std::vector<std::string> without;
   int bases = 3;
   Perturbation perturbation = Perturbation::kNone;
   std::string perturb;
   AntialiasOptions antialias;
   std::vector<Layer> layers;
 };
+
+/// `640x360`. Throws std::invalid_argument on anything else, or sides beyond [1, kMaxSide].
+[[nodiscard]] Extent parse_size(std::string_view text);
 
 /// `eigenlight` where it is registered, else the first method.
 [[nodiscard]] std::string default_method();

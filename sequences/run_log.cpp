@@ -67,6 +67,7 @@ std::string to_json_text(const RunDescription& run) {
                   {"direct_spp", run.direct_spp},
                   {"bounces", run.bounces},
                   {"method", run.method},
+                  {"without", run.without},
                   {"bases", run.bases},
                   {"seed", run.seed},
                   {"perturb", run.perturb},

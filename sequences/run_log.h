@@ -23,6 +23,7 @@ struct RunDescription {
   Extent extent;
   int spp = 0, direct_spp = 0, bounces = 0;
   std::string method;
+  std::string without;  ///< parts of the method that were off, with commas
   int bases = 0;
   std::uint32_t seed = 0;
   std::string perturb;
