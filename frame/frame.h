@@ -58,6 +58,32 @@ struct Frame {
   }
 };
 
+/// Copies all of a frame, reusing the storage of `to`.
+inline void copy_frame(const Frame& from, Frame& to) {
+  // Names every member, so that one that is added later cannot be forgotten here.
+  const auto& [number, previous, still, samples, camera, surface, indirect, motion, previous_depth,
+               direct, emission, position, rays, non_finite] = from;
+  const auto& [depth, normal, albedo, id] = surface;
+  to.resize(from.extent());
+  to.index = number;
+  to.previous_index = previous;
+  to.is_static = still;
+  to.spp = samples;
+  to.camera = camera;
+  to.surface.depth.copy_from(depth);
+  copy_planes(normal, to.surface.normal);
+  copy_planes(albedo, to.surface.albedo);
+  to.surface.id.copy_from(id);
+  copy_planes(indirect, to.indirect);
+  copy_planes(motion, to.motion);
+  to.previous_depth.copy_from(previous_depth);
+  copy_planes(direct, to.direct);
+  copy_planes(emission, to.emission);
+  copy_planes(position, to.position);
+  to.rays = rays;
+  to.non_finite_samples = non_finite;
+}
+
 /// Where frames come from: our renderer, or files.
 class FrameSource {
  public:

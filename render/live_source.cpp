@@ -216,4 +216,9 @@ PictureStats LiveSource::picture(const AntialiasOptions& options, const Frame& f
       options, {world, s.tracer, guides, s.options.spp, s.options.direct_spp, s.options.seed}, out);
 }
 
+void LiveSource::rewind_resampling() {
+  // Pixels without a surface draw none, whatever stands here.
+  state_->drawn.fill(static_cast<std::uint32_t>(state_->options.spp));
+}
+
 }  // namespace eigenlight

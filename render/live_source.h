@@ -42,6 +42,10 @@ class LiveSource final : public FrameSource {
   PictureStats picture(const AntialiasOptions& options, const Frame& frame,
                        const Planes<3>& indirect, Planes<3>& out);
 
+  /// Forgets the further samples that resample() drew for the frame that next() delivered last: the
+  /// next call draws the same ones again. So several methods can share one rendering.
+  void rewind_resampling();
+
  private:
   struct State;
   std::unique_ptr<State> state_;

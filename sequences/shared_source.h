@@ -1,0 +1,38 @@
+// One rendering for many methods.
+#pragma once
+
+#include "frame/frame.h"
+#include "render/live_source.h"
+#include "temporal/denoiser.h"
+
+namespace eigenlight {
+
+/// Renders each frame once and hands it to as many methods as ask for it, each of which gets the
+/// bits that a LiveSource of its own would give, further samples included.
+class SharedSource final : public FrameSource {
+ public:
+  /// `live` must outlive this.
+  explicit SharedSource(LiveSource& live) : live_(live) {}
+
+  /// Renders the next frame. False at the end of the sequence.
+  [[nodiscard]] bool render();
+  /// The frame that render() rendered last, before any resampling.
+  [[nodiscard]] const Frame& frame() const { return frame_; }
+  /// What the last render() took.
+  [[nodiscard]] const StageTime& render_time() const { return render_time_; }
+
+  /// A copy of the frame that render() rendered last, however often it is asked for. False before
+  /// the first.
+  [[nodiscard]] bool next(Frame& frame) override;
+  /// Of the method that called next() last.
+  [[nodiscard]] bool resample(const Plane<std::uint8_t>& extra, Frame& frame,
+                              Planes<3>& mean) override;
+
+ private:
+  LiveSource& live_;
+  Frame frame_;
+  StageTime render_time_;
+  bool has_frame_ = false;
+};
+
+}  // namespace eigenlight
