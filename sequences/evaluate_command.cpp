@@ -4,38 +4,18 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <ostream>
 
 #include "sequences/atomic_file.h"
+#include "sequences/figures_json.h"
 
 namespace eigenlight {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json to_json(const Figures& figures) {
-  Json json = Json::object();
-  for (std::size_t m = 0; m < kMetricCount; ++m) {
-    const auto& value = figures.values[m];
-    if (value && std::isfinite(*value)) json[std::string(kMetricNames[m])] = *value;
-  }
-  json["pixels"] = figures.pixels;
-  return json;
-}
-
-Json to_json(const FrameFigures& frame) {
-  Json json = {{"frame", frame.frame}};
-  json.update(to_json(frame[PixelSet::kSurface]));
-  for (const PixelSet set : {PixelSet::kYoung, PixelSet::kOld}) {
-    if (frame[set].pixels == 0) continue;
-    json[std::string(kPixelSetNames[static_cast<std::size_t>(set)])] = to_json(frame[set]);
-  }
-  return json;
-}
 
 void add_lag(const Lag& lag, Json& json) {
   if (!lag.frames) return;
@@ -127,10 +107,7 @@ void run(const CLI::App& command, const CommandOptions& given, std::ostream& out
 
 nlohmann::ordered_json to_json(const Evaluation& evaluation) {
   Json json = {{"frames", evaluation.frames.size()}};
-  for (std::size_t s = 0; s < kPixelSetCount; ++s) {
-    if (evaluation.mean[s].pixels == 0) continue;
-    json[std::string(kPixelSetNames[s])] = to_json(evaluation.mean[s]);
-  }
+  json.update(to_json(evaluation.mean));
   if (evaluation.step) json["step"] = *evaluation.step;
   if (evaluation.lag) add_lag(*evaluation.lag, json["mean"]);
   json["surface_from"] = evaluation.surface_from;

@@ -3,19 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <glm/glm.hpp>
 #include <string>
 #include <system_error>
 #include <utility>
 
-#include "frame/tiles.h"
+#include "sequences/develop.h"
 #include "sequences/exr_io.h"
 #include "sequences/file_pattern.h"
 #include "sequences/ldr_image.h"
-#include "sequences/metrics.h"
 
 namespace eigenlight {
 namespace {
@@ -63,59 +58,6 @@ std::vector<View> read_views(const std::filesystem::path& path) {
   }
   return views;
 }
-
-// The sRGB curve by table: 16384 steps are finer than a quarter of a byte where it is steepest.
-class Developer {
- public:
-  explicit Developer(float exposure) : exposure_(exposure) {
-    for (std::size_t i = 0; i < table_.size(); ++i) {
-      const double linear = static_cast<double>(i) / static_cast<double>(table_.size() - 1);
-      table_[i] = static_cast<std::uint8_t>(std::lround(255.0 * display_value(linear, {})));
-    }
-  }
-  // Means over blocks of factor x factor pixels; what is left over at right and bottom is cut off.
-  [[nodiscard]] Plane<std::uint8_t> develop(const Planes<3>& colors, int factor) const {
-    Plane<std::uint8_t> out(shrunk(colors[0].extent(), factor), 3);
-    parallel_for(out.height(), [&](int y) {
-      for (int x = 0; x < out.width(); ++x) {
-        const std::array<float, 3> mean = block_mean(colors, {x, y}, factor);
-        const bool is_good =
-            std::isfinite(mean[0]) && std::isfinite(mean[1]) && std::isfinite(mean[2]);
-        constexpr std::array<std::uint8_t, 3> kMagenta{255, 0, 255};
-        for (std::size_t c = 0; c < 3; ++c) {
-          out.at(x, y)[c] = is_good ? to_byte(mean[c]) : kMagenta[c];
-        }
-      }
-    });
-    return out;
-  }
-  [[nodiscard]] static Extent shrunk(Extent extent, int factor) {
-    return {std::max(extent.width / factor, 1), std::max(extent.height / factor, 1)};
-  }
-
- private:
-  [[nodiscard]] static std::array<float, 3> block_mean(const Planes<3>& colors, glm::ivec2 block,
-                                                       int factor) {
-    const Extent extent = colors[0].extent();
-    std::array<float, 3> mean{};
-    float count = 0.0f;
-    for (int y = block.y * factor; y < std::min((block.y + 1) * factor, extent.height); ++y) {
-      for (int x = block.x * factor; x < std::min((block.x + 1) * factor, extent.width); ++x) {
-        for (std::size_t c = 0; c < 3; ++c) mean[c] += colors[c](x, y);
-        count += 1.0f;
-      }
-    }
-    for (float& value : mean) value /= count;
-    return mean;
-  }
-  [[nodiscard]] std::uint8_t to_byte(float value) const {
-    const float v = std::clamp(value * exposure_, 0.0f, 1.0f);
-    return table_[static_cast<std::size_t>(v * static_cast<float>(table_.size() - 1) + 0.5f)];
-  }
-
-  float exposure_;
-  std::array<std::uint8_t, 16384> table_{};
-};
 
 std::size_t bytes_of(const std::vector<View>& views, const Developer& developer, int factor) {
   std::size_t bytes = 0;
