@@ -8,6 +8,8 @@
 #include <string>
 
 #include "sequences/checkpoint.h"
+#include "sequences/compare_command.h"
+#include "sequences/compare_options.h"
 #include "sequences/evaluate_command.h"
 #include "sequences/list_commands.h"
 #include "sequences/render_command.h"
@@ -45,6 +47,9 @@ void add_picture_options(CLI::App& command, RenderSettings& settings) {
 void add_run_options(CLI::App& command, RenderSettings& settings) {
   command.add_option("--method", settings.method,
                      fmt::format("See `eigenlight methods` [{}]", default_method()));
+  command.add_option("--without", settings.without,
+                     "Parts of the method to turn off, with commas; see `eigenlight methods "
+                     "--parts`");
   command.add_option("--bases", settings.bases, "Bases per pixel, 1 to 8")->capture_default_str();
   command
       .add_option("--aa", settings.antialias,
@@ -74,9 +79,13 @@ int parse_and_run(std::span<const char* const> args, const Console& console) {
   add_picture_options(*render, settings);
   add_run_options(*render, settings);
   const CLI::App* scenes = app.add_subcommand("scenes", "List the built-in scenes");
-  const CLI::App* methods = app.add_subcommand("methods", "List the methods");
+  CLI::App* methods = app.add_subcommand("methods", "List the methods");
+  bool lists_parts = false;
+  methods->add_flag("--parts", lists_parts, "List the parts that --without can turn off");
   add_evaluate_command(app, console.out);
   add_train_pyramid_command(app, console);
+  CompareSettings compare_settings;
+  const CLI::App* compare = add_compare_command(app, compare_settings);
   try {
     app.parse(static_cast<int>(args.size()), args.data());
   } catch (const CLI::Success& help_or_version) {
@@ -94,7 +103,8 @@ int parse_and_run(std::span<const char* const> args, const Console& console) {
     return kBadUsage;
   }
   if (scenes->parsed()) list_scenes(console.out);
-  if (methods->parsed()) list_methods(console.out);
+  if (methods->parsed()) (lists_parts ? list_parts : list_methods)(console.out);
+  if (compare->parsed()) return compare_command(compare_settings, console);
   return render->parsed() ? render_command(settings, console) : 0;
 }
 
