@@ -111,7 +111,8 @@ TableCell ratio(const TableCell& of, const TableCell& to) {
 // A row for a method with all its parts, and one without each.
 void add_ablation(const ComparePlan& plan, const CaseResults& results, PageSection& section) {
   PageTable table{fmt::format("What each part is worth, {} spp", plan.shown_spp()),
-                  "Factors are of the method with all its parts: above 1, the part helps or saves.",
+                  "Factors are of the method with all its parts: above 1 without a part, it lowers "
+                  "error or saves time.",
                   "method",
                   {{"relMSE"},
                    {"factor"},

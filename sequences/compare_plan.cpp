@@ -45,8 +45,9 @@ std::vector<CompareCase> make_cases(const CompareSettings& settings) {
   std::set<std::string> names;
   for (const std::string& scene : settings.scenes) {
     for (const std::string& perturb : split_list("perturb", settings.perturb)) {
-      CompareCase one{scene_word(scene), scene, perturb, parse_perturbation(perturb)};
-      if (perturb != "none") one.name += "-" + perturb;
+      const Perturbation perturbation = parse_perturbation(perturb);
+      CompareCase one{scene_word(scene), scene, format_perturbation(perturbation), perturbation};
+      if (perturb != "none") one.name += "-" + as_word(one.perturb);
       EL_CHECK(names.insert(one.name).second, "scene '{}': a second one called '{}'", scene,
                one.name);
       cases.push_back(std::move(one));

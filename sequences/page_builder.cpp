@@ -13,6 +13,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+Json to_json(const PlotSeries& series);
+Json to_json(const PagePlot& plot);
+Json to_json(const TableCell& cell);
+Json to_json(const PageTable& table);
+Json to_json(const GalleryKind& kind);
+Json to_json(const PageGallery& gallery);
+Json to_json(const PageSection& section);
+
 template <typename T>
 Json to_list(const std::vector<T>& items) {
   Json list = Json::array();

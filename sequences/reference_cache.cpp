@@ -34,8 +34,8 @@ std::string describe(const ReferenceIdentity& identity) {
 
 std::string directory_name(const ReferenceIdentity& identity, const std::string& description) {
   const std::uint64_t hash = XXH3_64bits(description.data(), description.size());
-  return fmt::format("{}-{}-{}x{}-{}spp-{:016x}", identity.scene, identity.perturb,
-                     identity.extent.width, identity.extent.height, identity.spp, hash);
+  return fmt::format("{}-{}x{}-{}spp-{:016x}", identity.scene, identity.extent.width,
+                     identity.extent.height, identity.spp, hash);
 }
 
 void make_directory(const std::filesystem::path& path) {

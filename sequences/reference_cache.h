@@ -25,7 +25,7 @@ struct AnimatedScene {
 
 /// All that decides the bits of references but the frame number.
 struct ReferenceIdentity {
-  std::string scene;  ///< for people: a word that can be part of a file name
+  std::string scene;  ///< for people, perturbation included: can be part of a file name
   std::uint64_t scene_hash = 0;
   std::string perturb;
   Extent extent;

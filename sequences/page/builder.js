@@ -27,7 +27,7 @@ function svg(name, attributes, text) {
 function number(value) {
   if (value === null || value === undefined) return "–";
   const size = Math.abs(value);
-  if (size !== 0 && (size < 0.001 || size >= 1e6)) return value.toExponential(2);
+  if (size !== 0 && (size < 0.001 || size >= 1e6)) return value.toExponential(2).replace(/\.?0+e/, "e");
   const places = size >= 1 ? Math.max(0, 2 - Math.floor(Math.log10(size))) : 3 - Math.max(-3, Math.ceil(Math.log10(size || 1)));
   return value.toLocaleString("en-US", { minimumFractionDigits: 0, maximumFractionDigits: places });
 }
@@ -79,11 +79,13 @@ function niceStep(span, count) {
   return power * [1, 2, 5, 10].find((m) => m * power >= raw * 0.999);
 }
 
-function linearScale(low, high, count) {
+function linearScale(low, high, count, least = 0) {
   if (low === high) [low, high] = [low - 0.5, high + 0.5];
-  const step = niceStep(high - low, count);
+  const step = Math.max(least, niceStep(high - low, count));
   const ticks = [];
-  for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; i += 1) ticks.push(i * step);
+  // Decimal places of the step, so that sums of tenths look like tenths.
+  const places = Math.max(0, -Math.floor(Math.log10(step)));
+  for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; i += 1) ticks.push(Number((i * step).toFixed(places)));
   return { share: (v) => (v - low) / (high - low), ticks };
 }
 
@@ -104,10 +106,11 @@ function logScale(low, high, count) {
   return { share: (v) => (Math.log10(v) - from) / decades, ticks: inside(ticks) };
 }
 
-function scale(axis, values, count) {
+// `least` is the smallest step between ticks: there are no halves of frames.
+function scale(axis, values, count, least = 0) {
   if (!values.length) return null;
   const low = Math.min(...values), high = Math.max(...values);
-  return axis.log ? logScale(low, high, count) : linearScale(low, high, count);
+  return axis.log ? logScale(low, high, count) : linearScale(low, high, count, least);
 }
 
 // ---- plots
@@ -156,7 +159,7 @@ function paint(plot) {
   plot.places = [];
   const series = shownSeries(plot);
   const points = series.flatMap((s) => s.points);
-  plot.xs = scale(plot.x, points.map((p) => p.x), Math.floor((width - box.left) / 70));
+  plot.xs = scale(plot.x, points.map((p) => p.x), Math.floor((width - box.left) / 70), plot.frames ? 1 : 0);
   plot.ys = scale(plot.y, points.map((p) => p.y), 5);
   if (!points.length) {
     plot.svg.append(svg("text", { x: width / 2, y: box.height / 2, "text-anchor": "middle" }, "nothing to show"));
@@ -340,7 +343,7 @@ function addSection(section, index) {
   link.href = `#section-${index}`;
   if (section.note) add(element, "p", section.note, "note");
   if (section.plots.length) {
-    const grid = add(element, "div", undefined, "plots");
+    const grid = add(element, "div", undefined, section.plots.length % 2 ? "plots odd" : "plots");
     section.plots.forEach((plot) => addPlot(grid, plot));
   }
   section.tables.forEach((table) => addTable(element, table));
