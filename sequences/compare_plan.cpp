@@ -28,7 +28,7 @@ std::string as_word(std::string text) {
   for (char& c : text) {
     if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '_' && c != '.') c = '-';
   }
-  return text.empty() || text[0] == '.' ? "scene" + text : text;
+  return text.empty() || text[0] == '.' ? fmt::format("scene{}", text) : text;
 }
 
 // `atrium`; of a file its name, or that of its folder for `sponza/scene.json`.
@@ -47,7 +47,7 @@ std::vector<CompareCase> make_cases(const CompareSettings& settings) {
     for (const std::string& perturb : split_list("perturb", settings.perturb)) {
       const Perturbation perturbation = parse_perturbation(perturb);
       CompareCase one{scene_word(scene), scene, format_perturbation(perturbation), perturbation};
-      if (perturb != "none") one.name += "-" + as_word(one.perturb);
+      if (perturb != "none") one.name += fmt::format("-{}", as_word(one.perturb));
       EL_CHECK(names.insert(one.name).second, "scene '{}': a second one called '{}'", scene,
                one.name);
       cases.push_back(std::move(one));

@@ -54,12 +54,12 @@ Json to_json(const TableCell& cell) {
   return words ? Json(*words) : Json();
 }
 
-// Rows whose number is the best of the column, as it is printed or not.
+// Rows whose number is the best of the column; none where all are the same.
 std::vector<bool> best_of(const PageTable& table, std::size_t column) {
   const TableColumn::Best rule = table.columns[column].best;
   std::vector<bool> is_best(table.rows.size(), false);
   if (rule == TableColumn::Best::kNone) return is_best;
-  std::optional<double> best;
+  std::optional<double> best, worst;
   const auto number = [&](std::size_t row) {
     return std::get_if<double>(&table.rows[row].cells[column]);
   };
@@ -67,8 +67,11 @@ std::vector<bool> best_of(const PageTable& table, std::size_t column) {
     return rule == TableColumn::Best::kLowest ? a < b : a > b;
   };
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
-    if (number(row) && (!best || better(*number(row), *best))) best = *number(row);
+    if (!number(row)) continue;
+    if (!best || better(*number(row), *best)) best = *number(row);
+    if (!worst || better(*worst, *number(row))) worst = *number(row);
   }
+  if (best == worst) return is_best;
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
     is_best[row] = best && number(row) && *number(row) == *best;
   }
