@@ -21,7 +21,7 @@ struct CaseResults {
   std::vector<Cell> cells;  ///< by sample count, then in the order of the contenders
 
   [[nodiscard]] const Cell* find(const std::string& contender, int spp) const;
-  /// relMSE of a contender at each sample count, and total CPU time, in the order of plan.spp.
+  /// The cells of a contender, by sample count.
   [[nodiscard]] std::vector<const Cell*> curve(const std::string& contender) const;
 };
 

@@ -75,7 +75,6 @@ class LiveEntry {
     modulate(frame.surface.albedo, *output_, light);
     judge_.add(truth, std::move(light));
   }
-  [[nodiscard]] const Plane<float>& age() const { return denoiser_->age(); }
   [[nodiscard]] Cell finish() && {
     const auto count = static_cast<double>(judge_.frames().size());
     cell_.render_ms /= count;

@@ -69,10 +69,10 @@ TEST(ExternalMethod, ReadsCommandsAndRefusesBadOnes) {
       {"a=run {color} {depth} {output}", "unknown place '{depth}'; known: {color}, {albedo}"},
       {"a=run {color} {frame} {frames} {output}", "{frame} is for one run a frame"},
   };
-  for (const auto& [text, message] : mistakes) {
-    EXPECT_THAT([&, given = text] { (void)parse_external(given); },
-                ThrowsMessage<std::invalid_argument>(HasSubstr(message)))
-        << text;
+  for (const auto& mistake : mistakes) {
+    const auto parse = [&] { (void)parse_external(mistake.first); };
+    EXPECT_THAT(parse, ThrowsMessage<std::invalid_argument>(HasSubstr(mistake.second)))
+        << mistake.first;
   }
 }
 
