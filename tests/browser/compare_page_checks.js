@@ -74,6 +74,7 @@ async function checkPictures() {
   slider.value = 2;
   slider.dispatchEvent(new Event("input", { bubbles: true }));
   check("the slider seeks", outputs().every((text) => text === "frame 6"));
+  check("pictures have no scale", all(".ramp").every((ramp) => getComputedStyle(ramp).display === "none"));
   const shown = firstSources();
   all("fieldset input")[1].click();
   check("heat maps are other pictures", firstSources().every((source, i) => source !== shown[i]));
