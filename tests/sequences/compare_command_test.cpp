@@ -232,9 +232,14 @@ TEST_F(CompareCommand, EachMistakeIsOneClearLine) {
               HasSubstr("scene 'cornell': a second one called 'cornell'"));
   EXPECT_FALSE(std::filesystem::exists(dir_ / "never"));
   std::ofstream(dir_ / "file") << "x";
-  const Outcome blocked = compare("a", {"--cache", dir_ / "file", "--methods", "noisy"});
-  EXPECT_EQ(blocked.status, 1);
-  EXPECT_THAT(blocked.err, HasSubstr("cannot make the directory"));
+  for (const char* option : {"-o", "--cache"}) {
+    std::vector<std::string> words{"compare", "cornell", "--methods", "noisy", "--size",
+                                   "48x27",   "--spp",   "1",         option,  dir_ / "file"};
+    if (words[8] == "--cache") words.insert(words.end(), {"-o", dir_ / "a"});
+    const Outcome blocked = call(words);
+    EXPECT_EQ(blocked.status, 1) << option;
+    EXPECT_THAT(blocked.err, HasSubstr("cannot make the directory")) << option;
+  }
 }
 
 }  // namespace
