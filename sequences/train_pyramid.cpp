@@ -81,8 +81,8 @@ PyramidExample frame_example(const std::string& scene_name, int radius, int side
       attributes.at(x, y)[3] = frame.surface.depth(fx, fy);
     }
   }
-  GlobalIlluminationEdge edge;
-  edge.blur_radius = static_cast<float>(radius);
+  const GlobalIlluminationEdge edge{
+      .normal_power = 64.0f, .depth_scale = 16.0f, .blur_radius = static_cast<float>(radius)};
   return {edge, {attributes, light, weight}};
 }
 

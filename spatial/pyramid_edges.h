@@ -28,12 +28,12 @@ struct GlobalIlluminationEdge {
   static constexpr int kAttributes = 4;
   static constexpr bool kKeepsMajor = true;
 
-  float normal_power = 64.0f;  ///< [1, 1000] sigma_N
-  float depth_scale = 16.0f;   ///< [0, 1000] sigma_z
+  float normal_power = 32.0f;  ///< [8, 1000] sigma_N
+  float depth_scale = 4.0f;    ///< [0, 1000] sigma_z
   float blur_radius = 16.0f;   ///< [0, 64] pixels
 
   void validate() const {
-    EL_CHECK(normal_power >= 1.0f && normal_power <= 1000.0f, "normal_power {}: expected [1, 1000]",
+    EL_CHECK(normal_power >= 8.0f && normal_power <= 1000.0f, "normal_power {}: expected [8, 1000]",
              normal_power);
     EL_CHECK(depth_scale >= 0.0f && depth_scale <= 1000.0f, "depth_scale {}: expected [0, 1000]",
              depth_scale);

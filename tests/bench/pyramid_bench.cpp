@@ -132,7 +132,8 @@ Figures compare(const NoisyFrame& noisy, const Planes<3>& found, const Planes<3>
 void quality(benchmark::State& state) {
   const BuiltinScene& scene = builtin_scenes()[static_cast<std::size_t>(state.range(0))];
   const NoisyFrame noisy(scene.name);
-  const GlobalIlluminationEdge edge{.blur_radius = static_cast<float>(state.range(1))};
+  // As in training.
+  const GlobalIlluminationEdge edge{64.0f, 16.0f, static_cast<float>(state.range(1))};
   Planes<3> wanted = make_planes<3>(NoisyFrame::kExtent),
             found = make_planes<3>(NoisyFrame::kExtent);
   bilateral_filter(edge, {noisy.attributes, noisy.frame.indirect, noisy.weight}, wanted);
