@@ -39,22 +39,36 @@ fs::path make_folder(const fs::path& path) {
 class LiveEntry {
  public:
   LiveEntry(const ComparePlan& plan, const CompareGroup& group, const Contender& contender)
-      : judge_(metric_options(group)) {
+      : method_(contender.method),
+        options_{plan.extent, plan.bases, {}},
+        judge_(metric_options(group)) {
     cell_.contender = contender.label;
     cell_.spp = group.spp;
-    DenoiserOptions options{plan.extent, plan.bases};
-    if (!contender.without.empty()) options.without = {contender.without};
-    const double before = heap_bytes();
-    denoiser_ = make_denoiser(contender.method, options);
-    note_growth(before);
+    if (!contender.without.empty()) options_.without = {contender.without};
+    restart();
     if (group.pictures.empty()) return;
     writer_.emplace(make_folder(group.pictures / contender.label),
                     std::vector<Layer>{Layer::kIndirect}, std::vector<ExrAttribute>{});
   }
 
-  void step(SharedSource& source) {
+  // A method that reads ahead takes no part in shared frames from its first turn on.
+  void take_turn(SharedSource& source) {
+    if (reads_ahead_) return;
+    Turn turn(source);
+    step(turn);
+    reads_ahead_ = turn.was_read_ahead();
+  }
+  void step(FrameSource& source) {
     const double before = heap_bytes();
     output_ = denoiser_->step(source);
+    note_growth(before);
+  }
+  [[nodiscard]] bool reads_ahead() const { return reads_ahead_; }
+  void restart() {
+    denoiser_.reset();
+    held_ = peak_ = 0.0;
+    const double before = heap_bytes();
+    denoiser_ = make_denoiser(method_, options_);
     note_growth(before);
   }
   // Of the frame of the last step.
@@ -93,8 +107,11 @@ class LiveEntry {
     peak_ = std::max(peak_, held_);
   }
 
+  std::string method_;
+  DenoiserOptions options_;
   std::unique_ptr<Denoiser> denoiser_;
   const Planes<3>* output_ = nullptr;
+  bool reads_ahead_ = false;
   Judge judge_;
   std::optional<FrameWriter> writer_;
   Cell cell_;
@@ -179,17 +196,15 @@ class GroupRun {
   }
 
   [[nodiscard]] bool run(const RunControl& control) {
-    RenderOptions options;
-    options.extent = plan_.extent;
-    options.spp = group_.spp;
-    options.bounces = plan_.bounces;
-    options.seed = plan_.seed;
-    LiveSource live(group_.animated.scene, group_.animated.animation, options, plan_.frames);
+    LiveSource live = open_source();
     SharedSource source(live);
     while (source.render()) {
       take(source);
       control.frame_done(source.frame().index);
       if (control.stops()) return false;
+    }
+    for (const auto& entry : live_) {
+      if (entry->reads_ahead() && !run_alone(*entry, control)) return false;
     }
     for (const auto& entry : external_) {
       if (!entry->run(control.stops)) return false;
@@ -211,16 +226,39 @@ class GroupRun {
   }
 
  private:
+  [[nodiscard]] LiveSource open_source() const {
+    RenderOptions options;
+    options.extent = plan_.extent;
+    options.spp = group_.spp;
+    options.bounces = plan_.bounces;
+    options.seed = plan_.seed;
+    return {group_.animated.scene, group_.animated.animation, options, plan_.frames};
+  }
+  // The same bits from a source of its own; time of rendering is that of the shared frames.
+  [[nodiscard]] bool run_alone(LiveEntry& entry, const RunControl& control) const {
+    LiveSource source = open_source();
+    entry.restart();
+    const std::size_t warmup = plan_.frames.size() - plan_.measured.size();
+    for (std::size_t i = 0; i < plan_.frames.size(); ++i) {
+      entry.step(source);
+      if (control.stops()) return false;
+      if (i >= warmup) entry.judge(truth(i - warmup), render_times_[i - warmup]);
+    }
+    return true;
+  }
   void take(SharedSource& source) {
     (void)ages_->step(source);
-    for (const auto& entry : live_) entry->step(source);
+    for (const auto& entry : live_) entry->take_turn(source);
     for (const auto& entry : external_) entry->add(source.frame());
     const int frame = source.frame().index;
     if (frame < plan_.measured.front()) return;
     render_ms_ += source.render_time().cpu_ms;
+    render_times_.push_back(source.render_time());
     bits_.push_back(surface_bits(source.frame().surface.id, ages_->age()));
     const JudgedFrame judged = truth(bits_.size() - 1);
-    for (const auto& entry : live_) entry->judge(judged, source.render_time());
+    for (const auto& entry : live_) {
+      if (!entry->reads_ahead()) entry->judge(judged, source.render_time());
+    }
   }
   [[nodiscard]] JudgedFrame truth(std::size_t i) const {
     const int frame = plan_.measured[i];
@@ -235,6 +273,7 @@ class GroupRun {
   std::vector<std::unique_ptr<LiveEntry>> live_;
   std::vector<std::unique_ptr<ExternalEntry>> external_;
   std::vector<Plane<std::uint8_t>> bits_;  // of each measured frame
+  std::vector<StageTime> render_times_;    // and what they took to render
   double render_ms_ = 0.0;
 };
 

@@ -25,11 +25,12 @@ struct CompareGroup {
 };
 
 /// Renders the frames of the plan once and hands each to every contender, so that all see the same
-/// bits, and measures those of plan.measured against both references. Programs run after the last
-/// frame. Pixels are young or old by the history of the method `mean`, for all contenders alike: it
-/// knows no resampling, so it counts frames since a surface came into view. Cells in the order of
-/// the contenders, or nothing if it was stopped. Throws std::runtime_error naming the program or
-/// file that failed.
+/// bits, and measures those of plan.measured against both references. Methods that
+/// read ahead get a source of their own after the last frame, and programs run then too. Pixels are
+/// young or old by the history of the method `mean`, for all contenders alike: it knows no
+/// resampling, so it counts frames since a surface came into view. Cells in the order of the
+/// contenders, or nothing if it was stopped. Throws std::runtime_error naming the program or file
+/// that failed.
 [[nodiscard]] std::optional<std::vector<Cell>> run_group(const ComparePlan& plan,
                                                          const CompareGroup& group,
                                                          const RunControl& control);

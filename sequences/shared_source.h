@@ -35,4 +35,24 @@ class SharedSource final : public FrameSource {
   bool has_frame_ = false;
 };
 
+/// One method's turn at a frame of a shared source: it gets the frame once. A method that asks for
+/// another within its step reads ahead, and needs a source of its own.
+class Turn final : public FrameSource {
+ public:
+  /// `shared` must outlive this.
+  explicit Turn(SharedSource& shared) : shared_(shared) {}
+
+  /// False, as at the end of a sequence, from the second call on.
+  [[nodiscard]] bool next(Frame& frame) override { return ++calls_ == 1 && shared_.next(frame); }
+  [[nodiscard]] bool resample(const Plane<std::uint8_t>& extra, Frame& frame,
+                              Planes<3>& mean) override {
+    return shared_.resample(extra, frame, mean);
+  }
+  [[nodiscard]] bool was_read_ahead() const { return calls_ > 1; }
+
+ private:
+  SharedSource& shared_;
+  int calls_ = 0;
+};
+
 }  // namespace eigenlight

@@ -105,8 +105,8 @@ TEST_F(CompareCommand, LeavesResultsTableAndPage) {
 
 // What is compared is what `render` makes, and is measured as `evaluate` measures it.
 TEST_F(CompareCommand, AgreesWithRenderAndEvaluate) {
-  ASSERT_EQ(compare("a", {"--methods", "eigenlight,chen2012", "--spp", "3"}).status, 0);
-  for (const std::string method : {"eigenlight", "chen2012"}) {
+  ASSERT_EQ(compare("a", {"--methods", "eigenlight,chen2012,meyer2006", "--spp", "3"}).status, 0);
+  for (const std::string method : {"eigenlight", "chen2012", "meyer2006"}) {
     const Outcome rendered =
         call({"render", "cornell", "-o", dir_ / method, "--size", "48x27", "--frames", "0-3",
               "--bounces", "2", "--method", method, "--layers", "indirect,id"});
