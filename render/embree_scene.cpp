@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "frame/check.h"
+#include "frame/float_traps.h"
 #include "render/scene_check.h"
 #include "render/texture_pyramid.h"
 
@@ -131,6 +132,7 @@ struct EmbreeScene::Impl {
 };
 
 EmbreeScene::Impl::Impl(const Scene& s, std::size_t moving_count) : scene(&s) {
+  const FloatTrapsOff embree_calculates_with_inf;
   check_scene(s);
   EL_CHECK(moving_count <= s.instances.size(), "{} moving instances: the scene has {}",
            moving_count, s.instances.size());
@@ -253,6 +255,7 @@ void EmbreeScene::Impl::check_device() const {
 
 void EmbreeScene::Impl::intersect(const Group& group, RTCRayHit& ray,
                                   std::uint32_t& instance) const {
+  const FloatTrapsOff embree_calculates_with_inf;
   RTCIntersectContext context = incoherent_context();
   const unsigned before = ray.hit.primID;
   ray.hit.primID = RTC_INVALID_GEOMETRY_ID;
@@ -275,6 +278,7 @@ void EmbreeScene::set_poses(std::span<const glm::mat4> poses) {
   const std::size_t first = impl_->first_moving;
   EL_CHECK(poses.size() == impl_->transforms.size() - first, "{} poses: expected {}", poses.size(),
            impl_->transforms.size() - first);
+  const FloatTrapsOff embree_calculates_with_inf;
   bool changed = false;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (impl_->transforms[first + i] == poses[i]) continue;
@@ -303,6 +307,7 @@ std::optional<Hit> EmbreeScene::intersect(const Ray& ray) const {
 }
 
 bool EmbreeScene::occluded(const Ray& ray) const {
+  const FloatTrapsOff embree_calculates_with_inf;
   RTCRay r = to_embree(ray);
   for (const Impl::Group* group : {&impl_->still, &impl_->moving}) {
     if (group->empty()) continue;
@@ -315,6 +320,7 @@ bool EmbreeScene::occluded(const Ray& ray) const {
 
 glm::vec3 EmbreeScene::glass_tint(const Ray& ray) const {
   if (impl_->glass.empty()) return glm::vec3(1.0f);
+  const FloatTrapsOff embree_calculates_with_inf;
   GlassContext context{incoherent_context()};
   RTCRay r = to_embree(ray);
   rtcOccluded1(impl_->glass.scene.get(), &context.embree, &r);

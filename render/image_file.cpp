@@ -10,6 +10,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "frame/float_traps.h"
+
 namespace eigenlight {
 namespace {
 
@@ -62,6 +64,7 @@ OIIO::ImageSpec unassociated() {
 }  // namespace
 
 Texture read_texture(const std::filesystem::path& path) {
+  const FloatTrapsOff threads_of_openimageio_start_here;
   const OIIO::ImageSpec config = unassociated();
   const InputPtr input = OIIO::ImageInput::open(path.string(), &config);
   if (!input) fail(path.string(), OIIO::geterror());
@@ -69,6 +72,7 @@ Texture read_texture(const std::filesystem::path& path) {
 }
 
 Texture read_texture(std::span<const std::uint8_t> bytes, const std::string& name) {
+  const FloatTrapsOff threads_of_openimageio_start_here;
   OIIO::ImageSpec config = unassociated();
   OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(bytes.data()), bytes.size());
   // OpenImageIO 2.4 loses the proxy that open() is given beside a configuration.
@@ -80,6 +84,7 @@ Texture read_texture(std::span<const std::uint8_t> bytes, const std::string& nam
 }
 
 Environment read_environment(const std::filesystem::path& path, float scale) {
+  const FloatTrapsOff pixels_may_hold_nan;
   const std::string name = path.string();
   const InputPtr input = OIIO::ImageInput::open(name);
   if (!input) fail(name, OIIO::geterror());

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "frame/float_traps.h"
 #include "render/scene_file_json.h"
 #include "render/scene_file_textures.h"
 
@@ -117,6 +118,13 @@ void read_nodes(const aiNode& node, const aiMatrix4x4& parent, const std::vector
   }
 }
 
+/// Null where assimp cannot read it.
+const aiScene* read_file(const std::filesystem::path& path, Assimp::Importer& importer) {
+  const FloatTrapsOff models_may_hold_nan;
+  importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, kSmoothingAngle);
+  return importer.ReadFile(path.string(), aiProcess_Triangulate | aiProcess_GenSmoothNormals);
+}
+
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
 }  // namespace
@@ -126,9 +134,7 @@ void load_model(const std::filesystem::path& path, Scene& scene, std::vector<std
     throw std::runtime_error(fmt::format("{}: no such model file", path.string()));
   }
   Assimp::Importer importer;
-  importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, kSmoothingAngle);
-  const aiScene* model =
-      importer.ReadFile(path.string(), aiProcess_Triangulate | aiProcess_GenSmoothNormals);
+  const aiScene* model = read_file(path, importer);
   if (model == nullptr) {
     throw std::runtime_error(fmt::format("{}: cannot read model: {}", short_name(path),
                                          first_line(importer.GetErrorString())));

@@ -1,5 +1,6 @@
 #include <limits>
 
+#include "frame/float_traps.h"
 #include "reproject/taps.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -243,6 +244,7 @@ HWY_EXPORT(ComputeTaps);
 void compute_taps(const Frame& current, const PreviousSurface& previous, const TapOptions& options,
                   const Tile& row, TapSegment& taps) {
   EL_DCHECK(row.x1 - row.x0 <= kSegment);
+  const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(ComputeTaps)(current, previous, options, row, taps);
 }
 

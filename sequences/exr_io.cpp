@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "frame/float_traps.h"
 #include "frame/tiles.h"
 #include "sequences/atomic_file.h"
 #include "sequences/exr_layers.h"
@@ -142,6 +143,7 @@ Plane<T> place(const OIIO::ImageSpec& spec, const T* window, int step) {
 
 void write_exr(const std::filesystem::path& path, std::span<const ExrChannel> channels,
                std::span<const ExrAttribute> attributes) {
+  const FloatTrapsOff layers_may_hold_nan_and_half_may_overflow;
   use_our_threads();
   const OIIO::ImageSpec spec = make_spec(channels, attributes);
   // Encoded to memory first: a full disk is then our own write that fails, with the system's
@@ -221,6 +223,7 @@ std::vector<Channel> ExrReader::State::channels_of(std::string_view layer) const
 template <typename T>
 std::vector<Plane<T>> ExrReader::State::read(const std::vector<Channel>& wanted,
                                              OIIO::TypeDesc type) const {
+  const FloatTrapsOff layers_may_hold_nan;
   const auto [low, high] =
       std::minmax_element(wanted.begin(), wanted.end(),
                           [](const Channel& a, const Channel& b) { return a.index < b.index; });
@@ -240,6 +243,7 @@ std::vector<Plane<T>> ExrReader::State::read(const std::vector<Channel>& wanted,
 }
 
 ExrReader::ExrReader(const std::filesystem::path& path) : state_(std::make_unique<State>()) {
+  const FloatTrapsOff threads_of_openexr_start_here;
   use_our_threads();
   state_->path = path.string();
   std::error_code error;

@@ -9,6 +9,8 @@
 #include <cctype>
 #include <stdexcept>
 
+#include "frame/float_traps.h"
+
 namespace eigenlight {
 
 bool is_ldr_name(const std::filesystem::path& path) {
@@ -19,6 +21,7 @@ bool is_ldr_name(const std::filesystem::path& path) {
 }
 
 Planes<3> read_ldr_image(const std::filesystem::path& path) {
+  const FloatTrapsOff threads_of_openimageio_start_here;
   std::error_code error;
   if (!std::filesystem::exists(path, error)) {
     throw std::runtime_error(fmt::format("{}: no such file", path.string()));
@@ -49,6 +52,7 @@ Planes<3> read_ldr_image(const std::filesystem::path& path) {
 std::vector<unsigned char> encode_jpeg(const Plane<std::uint8_t>& rgb, int quality) {
   EL_CHECK(rgb.channels() == 3, "a JPEG picture needs 3 values a pixel, not {}", rgb.channels());
   EL_CHECK(quality >= 1 && quality <= 100, "JPEG quality {}: must be in [1, 100]", quality);
+  const FloatTrapsOff threads_of_openimageio_start_here;
   std::vector<unsigned char> bytes;
   OIIO::Filesystem::IOVecOutput memory(bytes);
   OIIO::ImageSpec spec(rgb.width(), rgb.height(), 3, OIIO::TypeUInt8);

@@ -1,5 +1,6 @@
 #include <limits>
 
+#include "frame/float_traps.h"
 #include "reproject/basis_rows.h"
 #include "temporal/predict.h"
 
@@ -67,6 +68,7 @@ HWY_EXPORT(PredictTile);
 void predict_tile(const BasisField& bases, const CoefficientField& coefficients,
                   const Planes<3>& light, const Tile& tile, const PredictOutputs& out) {
   EL_DCHECK(tile.x1 - tile.x0 <= kSegment);
+  const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(PredictTile)(bases, coefficients, light, tile, out);
 }
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "frame/float_traps.h"
 #include "temporal/tile_sums.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -120,6 +121,7 @@ HWY_EXPORT(AccumulateTile);
 
 void accumulate_tile(const SumInputs& in, const Tile& tile, TileSums& sums) {
   EL_DCHECK(tile.x1 - tile.x0 <= kSegment);
+  const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(AccumulateTile)(in, tile, sums);
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "frame/float_traps.h"
 #include "frame/tiles.h"
 #include "tests/support/scenes.h"
 
@@ -270,6 +271,7 @@ TEST(LiveSource, ResampleContinuesTheSequenceOfThePixel) {
 }
 
 TEST(LiveSource, NonFiniteSamplesAreCountedAndLeftOut) {
+  const FloatTrapsOff nan_is_meant;
   Scene scene = moving_scene();
   scene.lights.spheres = {{{0, 0, -5}, 0.5f, {kInfinity, 1, 1}}};  // behind the camera
   const RenderOptions o = small_options();

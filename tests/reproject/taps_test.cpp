@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "frame/float_traps.h"
 #include "tests/reference/taps.h"
 #include "tests/support/extents.h"
 #include "tests/support/random_frames.h"
@@ -52,6 +53,7 @@ Count compare_with_twin(const Frame& current, const Frame& before) {
 }
 
 TEST(Taps, AgreeWithTheTwinOnEveryTarget) {
+  const FloatTrapsOff nan_is_meant;
   for (const Extent extent : kSweepExtents) {
     const RandomFrameOptions options{.extent = extent};
     const Frame before = make_random_frame(options, 4), current = make_random_frame(options, 5);
@@ -209,6 +211,7 @@ TEST_F(TapRules, OneFarCornerIsNotTrusted) {
 }
 
 TEST(TapOptions, RefusesWhatIsOutOfRange) {
+  const FloatTrapsOff nan_is_meant;
   const auto refused = [](float plane, float cosine) {
     EXPECT_THROW((TapOptions{plane, cosine}.validate()), std::invalid_argument);
   };
