@@ -1,6 +1,8 @@
 #include "frame/state.h"
 
+#include <algorithm>
 #include <cstring>
+#include <iterator>
 #include <stdexcept>
 
 namespace eigenlight {
@@ -43,6 +45,20 @@ void StateReader::block(std::string_view name, void* data, std::size_t size) {
   raw(name, &data_size, sizeof(data_size));
   if (data_size != size) fail(name, fmt::format("{} bytes, expected {}", data_size, size));
   raw(name, data, size);
+}
+
+void StateReader::value(std::string_view name, bool& value) {
+  std::uint8_t byte = 0;
+  block(name, &byte, sizeof(byte));
+  if (byte > 1) fail(name, fmt::format("{}, expected 0 or 1", byte));
+  value = byte == 1;
+}
+
+void StateReader::check_same(std::string_view name, const std::int32_t (&found)[3],
+                             const std::int32_t (&wanted)[3]) {
+  if (std::equal(std::begin(found), std::end(found), std::begin(wanted))) return;
+  fail(name, fmt::format("{}x{}x{}, expected {}x{}x{}", found[0], found[1], found[2], wanted[0],
+                         wanted[1], wanted[2]));
 }
 
 void StateReader::check_shape(std::string_view name, const std::int32_t (&shape)[3],

@@ -49,7 +49,8 @@ class StateWriter {
 };
 
 /// Reads values back in the order they were written. Throws std::runtime_error naming the value
-/// when the bytes hold another one, another size, or end too soon.
+/// when the bytes hold another one, another size or shape, no bool where one is meant, or end too
+/// soon.
 class StateReader {
  public:
   explicit StateReader(std::string_view bytes) : bytes_(bytes) {}
@@ -59,10 +60,13 @@ class StateReader {
     static_assert(std::is_trivially_copyable_v<T>);
     block(name, &value, sizeof(T));
   }
+  void value(std::string_view name, bool& value);
+  /// A plane that has a shape is given values of that shape only; an empty one takes any.
   template <typename T>
   void plane(std::string_view name, Plane<T>& plane) {
     std::int32_t shape[3] = {0, 0, 0};
     block(name, shape, sizeof(shape));
+    if (!plane.empty()) check_same(name, shape, {plane.width(), plane.height(), plane.channels()});
     if (shape[0] == 0 && shape[1] == 0) {
       plane = {};
       return;
@@ -81,6 +85,8 @@ class StateReader {
 
  private:
   void check_shape(std::string_view name, const std::int32_t (&shape)[3], std::size_t size) const;
+  static void check_same(std::string_view name, const std::int32_t (&found)[3],
+                         const std::int32_t (&wanted)[3]);
   void block(std::string_view name, void* data, std::size_t size);
   void raw(std::string_view name, void* data, std::size_t size);
 

@@ -22,8 +22,7 @@ class SurfaceHistory {
   void keep(const Frame& frame);
   void reset() { known_ = false; }  ///< whatever comes next is a cut
 
-  /// load() throws std::runtime_error on data that is not such a state. Sizes are for the owner to
-  /// check, who has planes of its own.
+  /// load() throws std::runtime_error on data that is not such a state of this size.
   void save(StateWriter& out) const;
   void load(StateReader& in);
 

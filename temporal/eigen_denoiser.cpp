@@ -184,7 +184,7 @@ void EigenDenoiser::merge_samples(const Tile& tile, bool resampled) {
         light_[c](x, y) = (regular * frame_.indirect[c](x, y) + more) * scale;
         sum += std::abs(light_[c](x, y));
       }
-      const bool usable = surface && sum <= kLargestLight;  // NaN fails too
+      const bool usable = surface && std::islessequal(sum, kLargestLight);  // NaN fails too
       if (!usable) {
         for (auto& plane : light_) plane(x, y) = std::numeric_limits<float>::quiet_NaN();
       }
@@ -346,8 +346,6 @@ void EigenDenoiser::load(StateReader& in) {
   in.plane("basis values", bases_.data());
   in.plane("variance", variance_);
   memory_.load(in);
-  expect("width", variance_.width(), extent_.width);
-  expect("height", variance_.height(), extent_.height);
 }
 
 }  // namespace eigenlight

@@ -1,6 +1,7 @@
 #include "temporal/light_memory.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace eigenlight {
 namespace {
@@ -49,7 +50,7 @@ SmallMatrix LightMemory::normalized(int tile) const {
 }
 
 void LightMemory::advance(const CoefficientField& coefficients, CoefficientField& learning) {
-  ++since_birth_;
+  since_birth_ = std::min(since_birth_ + 1, kBirthInterval);  // runs have no end
   const int rank = active();
   parallel_for(tiles_, [&](int tile) {
     const auto delta = coefficients.tile(tile);
@@ -121,7 +122,13 @@ void LightMemory::save(StateWriter& out) const {
 
 void LightMemory::load(StateReader& in) {
   in.value("frames since birth", since_birth_);
-  for (std::uint8_t& used : in_use_) in.value("slot in use", used);
+  since_birth_ = std::clamp(since_birth_, 0, kBirthInterval);
+  bool valid = true;
+  for (std::uint8_t& used : in_use_) {
+    in.value("slot in use", used);
+    valid = valid && used <= 1;
+  }
+  if (!valid || in_use_[0] != 1) throw std::runtime_error("state of 'slots': none that can be");
   for (double& value : information_) in.value("information", value);
   for (double& value : expected_) in.value("expected", value);
 }

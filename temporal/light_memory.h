@@ -50,7 +50,7 @@ class LightMemory {
   [[nodiscard]] SmallMatrix normalized(int tile) const;
 
   int bases_, tiles_;
-  int since_birth_ = 0;               // frames
+  int since_birth_ = 0;               // frames, up to the interval between births
   std::vector<std::uint8_t> in_use_;  // per slot
   std::vector<double> information_;   // per tile: K x K
   std::vector<double> expected_;      // per tile: K

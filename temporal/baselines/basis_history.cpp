@@ -106,7 +106,6 @@ void BasisHistory::save(StateWriter& out) const {
 }
 
 void BasisHistory::load(StateReader& in) {
-  const Extent wanted = extent();
   surfaces_.load(in);
   int bases = 0;
   in.value("bases", bases);
@@ -114,10 +113,6 @@ void BasisHistory::load(StateReader& in) {
     throw std::runtime_error(fmt::format("state: {} bases, expected {}", bases, bases_.bases()));
   }
   in.plane("basis values", bases_.data());
-  if (extent() != wanted) {
-    throw std::runtime_error(fmt::format("state: {}x{}, expected {}x{}", extent().width,
-                                         extent().height, wanted.width, wanted.height));
-  }
 }
 
 }  // namespace eigenlight

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "temporal/stage_clock.h"
+#include "temporal/tile_sums.h"
 
 namespace eigenlight {
 namespace {
@@ -36,7 +37,8 @@ const Planes<3>* Chen2012::step(FrameSource& source) {
   const BasisHistory::Warp warp = history_.warp(frame_);
   report_.cut = warp.cut;
   report_.skipped_warp = warp.skipped;
-  number_ = warp.cut ? 1 : number_ + 1;
+  // Beyond the number of bases n says nothing new, and runs have no end.
+  number_ = warp.cut ? 1 : std::min(number_ + 1, kMaxBases + 1);
   report_[Stage::kReproject] = clock.lap();
   resample(source);
   report_[Stage::kResample] = clock.lap();
@@ -94,13 +96,15 @@ void Chen2012::merge_samples(const Tile& tile, bool resampled) {
     for (int x = tile.x0; x < tile.x1; ++x) {
       const bool surface = frame_.surface.id(x, y) != 0;
       const float extra = resampled ? static_cast<float>(extra_(x, y)) : 0.0f;
-      bool finite = true;
+      float sum = 0.0f;
       for (std::size_t c = 0; c < 3; ++c) {
         float& u = light_[c](x, y);
         u = frame_.indirect[c](x, y);
         if (extra > 0.0f) u = (regular * u + extra * extra_mean_[c](x, y)) / (regular + extra);
-        finite = finite && std::isfinite(u);
+        sum += std::abs(u);
       }
+      // Products of two lights have to fit into the bases. NaN fails too, without a fault.
+      const bool finite = std::islessequal(sum, kLargestLight);
       age_(x, y) = surface && finite ? 1.0f : 0.0f;
       counts.non_finite += surface && !finite ? 1 : 0;
     }
@@ -135,6 +139,7 @@ void Chen2012::load(StateReader& in) {
         fmt::format("state of 'chen2012': version {}, expected {}", version, kStateVersion));
   }
   in.value("number", number_);
+  number_ = std::clamp(number_, 0, kMaxBases + 1);
   history_.load(in);
 }
 

@@ -32,7 +32,7 @@ std::string written() {
 
 struct Values {
   int count = 0;
-  Plane<float> image, nothing{{2, 2}};
+  Plane<float> image, nothing;
 };
 
 Values read(const std::string& bytes) {
@@ -97,6 +97,36 @@ TEST(State, RefusesAValueOfAnotherSize) {
         in.value("count", count);
       },
       ThrowsMessage<std::runtime_error>(AllOf(HasSubstr("count"), HasSubstr("expected 8"))));
+}
+
+TEST(State, RefusesAnotherShapeThanThePlaneHas) {
+  StateWriter out;
+  out.plane("image", ramp({5, 3}, 2));
+  const std::string bytes(out.bytes().data(), out.bytes().size());
+  struct Shape {
+    Extent extent;
+    int channels;
+  };
+  for (const Shape& shape : {Shape{{3, 5}, 2}, Shape{{5, 3}, 1}, Shape{{6, 3}, 2}}) {
+    Plane<float> plane(shape.extent, shape.channels);
+    StateReader in(bytes);
+    EXPECT_THAT([&] { in.plane("image", plane); },
+                ThrowsMessage<std::runtime_error>(HasSubstr("'image': 5x3x2, expected")));
+  }
+  StateWriter empty;
+  empty.plane("image", Plane<float>());
+  StateReader in({empty.bytes().data(), empty.bytes().size()});
+  Plane<float> plane({5, 3});
+  EXPECT_THROW(in.plane("image", plane), std::runtime_error);
+}
+
+TEST(State, RefusesABoolThatIsNone) {
+  StateWriter out;
+  out.value("known", std::uint8_t{2});
+  StateReader in({out.bytes().data(), out.bytes().size()});
+  bool known = false;
+  EXPECT_THAT([&] { in.value("known", known); },
+              ThrowsMessage<std::runtime_error>(HasSubstr("2, expected 0 or 1")));
 }
 
 TEST(State, RefusesDamagedSizesBeforeAskingForMemory) {
