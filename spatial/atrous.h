@@ -29,7 +29,8 @@ struct AtrousOptions {
 ///                                  - |l_q - l_p| / (luminance_sigmas * sigma_p + 1e-4 l_p))
 /// where sigma_p^2 is the variance of luminance around p (3 x 3 Gaussian) and the exponential is
 /// (1 - x/8)^8, which ends at x = 8. Variances follow: var(p) = sum (h w)^2 var(q) / (sum h w)^2.
-/// Pixels without surface neither give nor take; they keep their value.
+/// Pixels without surface neither give nor take; they keep their value. Nor do pixels whose normals
+/// have a product above kLargestCosine, or that have no depth, take from each other.
 ///
 /// `color` and `variance` are filtered in place; the scratch planes have the same extent. Tiles in
 /// which no variance exceeds `quiet` times the squared luminance are copied; `skipped` counts their

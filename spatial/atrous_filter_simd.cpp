@@ -1,3 +1,4 @@
+#include "frame/float_traps.h"
 #include "spatial/atrous_filter_kernel.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -118,6 +119,7 @@ namespace eigenlight {
 HWY_EXPORT(FilterTile);
 
 void atrous_filter_tile(const AtrousFilterPass& pass, const Tile& tile) {
+  const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(FilterTile)(pass, tile);
 }
 

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "frame/float_traps.h"
+#include "frame/usable_surface.h"
 #include "spatial/atrous_kernel.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -83,8 +85,9 @@ Center LoadCenter(const AtrousPass& pass, int x, int y, VF smooth_variance) {
   const VF line = hn::Set(d, static_cast<float>(y));
   at.plane =
       hn::Mul(depth, hn::MulAdd(at.plane_x, column, hn::MulAdd(at.plane_y, line, at.plane_c)));
-  at.plane_scale =
-      hn::Div(hn::Set(d, 0.125f), hn::Mul(hn::Set(d, pass.options.plane_distance), depth));
+  // A depth that is none must not turn the decay into a growth: it leaves no valid tap.
+  const VF distance = hn::Mul(hn::Set(d, pass.options.plane_distance), depth);
+  at.plane_scale = hn::Div(hn::Set(d, 0.125f), hn::Max(distance, hn::Zero(d)));
 
   const VF color[3] = {load(pass.color[0]), load(pass.color[1]), load(pass.color[2])};
   at.luminance = Luminance(color[0], color[1], color[2]);
@@ -127,8 +130,11 @@ HWY_INLINE void AddTap(const TapRow& row, VF x, VF y, VF kernel, Load load, Cent
   VF cosine = hn::Mul(at.normal[0], load(row.normal[0]));
   cosine = hn::MulAdd(at.normal[1], load(row.normal[1]), cosine);
   cosine = hn::MulAdd(at.normal[2], load(row.normal[2]), cosine);
-  // Sky has infinite depth and so NaN or -inf here: the comparison fails.
-  const auto valid = hn::And(hn::Gt(decay, hn::Zero(d)), hn::Gt(cosine, hn::Zero(d)));
+  // Sky has infinite depth and so NaN or -inf here: the comparison fails. So do normals that are no
+  // unit vectors, whose 64th power would be Inf.
+  const auto valid =
+      hn::And(hn::Gt(decay, hn::Zero(d)),
+              hn::And(hn::Gt(cosine, hn::Zero(d)), hn::Le(cosine, hn::Set(d, kLargestCosine))));
   // (1 - x/8)^8 and (N . N)^64 share their squarings.
   for (int s = 0; s < 3; ++s) cosine = hn::Mul(cosine, cosine);
   VF w = hn::Mul(cosine, decay);
@@ -238,6 +244,7 @@ HWY_EXPORT(AtrousTile);
 
 void atrous_tile(const AtrousPass& pass, const Tile& tile) {
   EL_DCHECK(tile.x1 - tile.x0 <= kAtrousWidth);
+  const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(AtrousTile)(pass, tile);
 }
 

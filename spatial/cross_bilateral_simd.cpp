@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "frame/float_traps.h"
 #include "spatial/cross_bilateral_kernel.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -138,6 +139,7 @@ HWY_EXPORT(BilateralTile);
 
 void cross_bilateral_tile(const TapPlanes& planes, const CrossBilateralOptions& options,
                           const Tile& tile, Planes<3>& out) {
+  const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(BilateralTile)(planes, options, tile, out);
 }
 

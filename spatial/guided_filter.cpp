@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "frame/usable_surface.h"
 #include "spatial/guided_filter_kernel.h"
 
 namespace eigenlight {
@@ -23,9 +24,8 @@ float mean_log_depth(const Frame& frame) {
   double sum = 0.0, count = 0.0;
   for (int y = 0; y < frame.extent().height; y += 8) {
     for (int x = 0; x < frame.extent().width; x += 8) {
-      const float depth = frame.surface.depth(x, y);
-      if (frame.surface.id(x, y) == 0 || !(depth > 0.0f) || !std::isfinite(depth)) continue;
-      sum += std::log(static_cast<double>(depth));
+      if (!is_usable_surface(frame.surface, x, y)) continue;
+      sum += std::log(static_cast<double>(frame.surface.depth(x, y)));
       count += 1.0;
     }
   }

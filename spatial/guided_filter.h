@@ -48,9 +48,9 @@ struct GuidedScratch;
 /// mean(b_k). The logarithm makes the depth dimensionless and the same for every window.
 ///
 /// A pixel's signal counts where it is finite and its weight positive and finite; all others, NaN
-/// or not, touch no sum, but get an output from their geometry, too. Surfaces need an id, a normal
-/// that is finite and a depth in (0, inf). Output is 0 without surface and where no window holds a
-/// usable signal. It is linear in the signal and may thus leave its range, below 0 as well.
+/// or not, touch no sum, but get an output from their geometry, too. Surfaces are those of
+/// is_usable_surface() (frame/usable_surface.h). Output is 0 without surface and where no window
+/// holds a usable signal. It is linear in the signal and may thus leave its range, below 0 as well.
 ///
 /// A sum has the values of its own window only, so that nothing drifts and no firefly leaves a
 /// trace: sums over rows double, those over columns are the sum of the rest of one block of

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "frame/float_traps.h"
 #include "spatial/guided_filter_kernel.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -290,6 +291,7 @@ namespace eigenlight {
 HWY_EXPORT(GuidedRun);
 
 void guided_run(const GuidedWork& work, const Tile& run, GuidedScratch& scratch, Planes<3>& out) {
+  const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(GuidedRun)(work, run, scratch, out);
 }
 

@@ -2,6 +2,8 @@
 #include <cstring>
 #include <limits>
 
+#include "frame/float_traps.h"
+#include "frame/usable_surface.h"
 #include "spatial/guided_filter_kernel.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -47,9 +49,11 @@ RowMasks MasksAt(const GuidedRow& row, int x) {
   const VF depth = load(row.depth), weight = load(row.weight);
   RowMasks masks;
   masks.surface = hn::RebindMask(d, hn::Ne(id, hn::Zero(du)));
-  masks.surface = hn::And(masks.surface, hn::And(hn::Gt(depth, zero), finite(depth)));
+  masks.surface = hn::And(masks.surface, hn::And(hn::Ge(depth, hn::Set(d, kNearestDepth)),
+                                                 hn::Le(depth, hn::Set(d, kFarthestDepth))));
   for (const auto& plane : row.normal) {
-    masks.surface = hn::And(masks.surface, finite(load(plane)));
+    const VF normal = hn::Abs(load(plane));
+    masks.surface = hn::And(masks.surface, hn::Le(normal, hn::Set(d, kLargestNormal)));
   }
   masks.used = hn::And(masks.surface, hn::And(hn::Gt(weight, zero), finite(weight)));
   for (const auto& plane : row.signal) masks.used = hn::And(masks.used, finite(load(plane)));
@@ -116,6 +120,7 @@ HWY_EXPORT(LoadRow);
 
 void guided_load_row(const GuidedWork& work, const GuidedColumns& columns, int y,
                      GuidedScratch& scratch) {
+  const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(LoadRow)(work, columns, y, scratch);
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "frame/usable_surface.h"
+
 namespace eigenlight {
 namespace {
 
@@ -62,9 +64,8 @@ void TapPlanes::load_pixel(const SpatialInputs& in, int x, int y) {
   const glm::vec3 n = value(from.normal, x, y), a = value(from.albedo, x, y);
   const glm::vec3 s = value(in.signal, x, y);
   const float z = from.depth(x, y), w = in.weight(x, y);
-  const bool shown =
-      from.id(x, y) != 0 && z > 0.0f && std::isfinite(z) && is_finite(n) && is_finite(a);
-  const bool used = shown && w > 0.0f && std::isfinite(w) && is_finite(s);
+  const bool shown = is_usable_surface(from, x, y) && is_finite(a);
+  const bool used = shown && std::isgreater(w, 0.0f) && std::isfinite(w) && is_finite(s);
   const glm::vec2 pixel(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
   const int i = x + margin_;
   depth(i, y) = shown ? z : 0.0f;

@@ -16,9 +16,9 @@ struct TapLight {
 /// Planes of the image with a margin of zeros on the left and the right, so that taps up to `reach`
 /// pixels beside the image, in vectors of up to 16 floats, need no test. Rows have no margin.
 ///
-/// A pixel is a surface where its id is not 0, its depth in (0, inf), and its normal and albedo
-/// finite; all planes are 0 elsewhere. Light is usable on surfaces where the weight is positive and
-/// finite and all three channels are finite.
+/// A pixel is a surface where is_usable_surface() says so and its albedo is finite; all planes are
+/// 0 elsewhere. Light is usable on surfaces where the weight is positive and finite and all three
+/// channels are finite.
 class TapPlanes {
  public:
   /// Throws std::invalid_argument on a bad size.

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "frame/usable_surface.h"
+
 namespace eigenlight {
 namespace {
 
@@ -34,7 +36,7 @@ class Center {
                 (kPlaneDistance * frame.surface.depth(pixel.x, pixel.y))) {}
 
   [[nodiscard]] float weight(glm::ivec2 q) const {
-    float facing = std::max(0.0f, glm::dot(normal_, normal_at(frame_, q)));
+    float facing = std::clamp(glm::dot(normal_, normal_at(frame_, q)), 0.0f, 1.0f);
     for (int i = 0; i < 6; ++i) facing *= facing;  // to the power of 64
     const float plane = std::abs(glm::dot(across_, point_at(frame_, q) - point_));
     const glm::vec2 step(q - pixel_);
@@ -50,12 +52,17 @@ class Center {
 
 Values filter_pixel(const Frame& frame, const BasisField& bases, glm::ivec2 p) {
   const int count = 3 * bases.bases();
-  const Center center(frame, p);
   Values sum{};
+  const float* own = bases.pixel(p.x, p.y);
+  if (!is_usable_surface(frame.surface, p.x, p.y)) {
+    std::copy_n(own, count, sum.begin());
+    return sum;
+  }
+  const Center center(frame, p);
   float weights = 0.0f;
   for (int y = p.y - kRadius; y <= p.y + kRadius; ++y) {
     for (int x = p.x - kRadius; x <= p.x + kRadius; ++x) {
-      if (!bases.extent().contains(x, y) || frame.surface.id(x, y) == 0) continue;
+      if (!bases.extent().contains(x, y) || !is_usable_surface(frame.surface, x, y)) continue;
       if (!(bases.age(x, y) > 0.0f)) continue;
       const float w = center.weight({x, y});
       if (!(w > 0.0f)) continue;
@@ -64,7 +71,6 @@ Values filter_pixel(const Frame& frame, const BasisField& bases, glm::ivec2 p) {
       for (int i = 0; i < count; ++i) sum[static_cast<std::size_t>(i)] += w * values[i];
     }
   }
-  const float* own = bases.pixel(p.x, p.y);
   for (int i = 0; i < count; ++i) {
     float& value = sum[static_cast<std::size_t>(i)];
     value = weights > 0.0f ? value / weights : own[i];

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "frame/usable_surface.h"
+
 namespace eigenlight {
 
 void SvgfWeights::validate() const {
@@ -23,8 +25,10 @@ float svgf_geometry_weight(const Frame& guides, const SvgfWeights& weights, glm:
   };
   const glm::vec3 normal = normal_at(p), view_normal = camera.world_to_view * normal;
   float facing = std::max(0.0f, glm::dot(normal, normal_at(q)));
+  // Normals that are no unit vectors, and depths that are none, would let weights grow.
+  if (!std::islessequal(facing, kLargestCosine)) return 0.0f;
   for (int s = 0; s < weights.normal_squarings; ++s) facing *= facing;
-  const float depth = guides.surface.depth(p.x, p.y);
+  const float depth = std::max(guides.surface.depth(p.x, p.y), 0.0f);
   const float along = std::abs(glm::dot(view_normal, camera.pixel_to_view(glm::vec2(p) + 0.5f)));
   const glm::vec2 slope =
       glm::vec2(view_normal) * (depth / (camera.focal * std::max(along, 1e-3f)));

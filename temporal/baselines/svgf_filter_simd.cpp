@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "frame/float_traps.h"
+#include "frame/usable_surface.h"
 #include "temporal/baselines/svgf_filter.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -89,7 +91,8 @@ Center LoadCenter(const SvgfPass& pass, const TapRow& row, int x, int y, VF smoo
   const VF sigma = hn::Set(d, pass.weights.depth_slopes);
   at.slope_x = hn::Mul(hn::Mul(nx, scale), sigma);
   at.slope_y = hn::Mul(hn::Mul(ny, scale), sigma);
-  at.depth_epsilon = hn::Mul(at.depth, hn::Set(d, 1e-3f));
+  // A depth that is none must not turn the decay into a growth.
+  at.depth_epsilon = hn::Mul(hn::Max(at.depth, hn::Zero(d)), hn::Set(d, 1e-3f));
 
   const VF color[3] = {hn::LoadU(d, row.color[0] + x), hn::LoadU(d, row.color[1] + x),
                        hn::LoadU(d, row.color[2] + x)};
@@ -122,7 +125,10 @@ HWY_INLINE void AddTap(const SvgfPass& pass, const TapRow& row, glm::vec2 offset
   VF cosine = hn::Mul(at.normal[0], load(row.normal[0]));
   cosine = hn::MulAdd(at.normal[1], load(row.normal[1]), cosine);
   cosine = hn::MulAdd(at.normal[2], load(row.normal[2]), cosine);
-  const auto valid = hn::And(hn::Gt(load(row.known), hn::Zero(d)), hn::Gt(cosine, hn::Zero(d)));
+  // Normals that are no unit vectors would have powers without bound.
+  const auto unit =
+      hn::And(hn::Gt(cosine, hn::Zero(d)), hn::Le(cosine, hn::Set(d, kLargestCosine)));
+  const auto valid = hn::And(hn::Gt(load(row.known), hn::Zero(d)), unit);
   for (int s = 0; s < pass.weights.normal_squarings; ++s) cosine = hn::Mul(cosine, cosine);
   const VF decay = hn::Exp(d, hn::Neg(hn::MulAdd(light, at.luminance_scale, apart)));
   // Where nothing is seen depths are infinite and the product is NaN.
@@ -199,6 +205,7 @@ HWY_EXPORT(PassTile);
 
 void svgf_pass_tile(const SvgfPass& pass, const SvgfImage& in, const Tile& tile, SvgfImage& out) {
   EL_DCHECK(tile.x1 - tile.x0 <= 64);
+  const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(PassTile)(pass, in, tile, out);
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "frame/usable_surface.h"
 #include "spatial/atrous.h"
 
 namespace eigenlight::reference {
@@ -70,7 +71,9 @@ inline double atrous_weight(const Frame& guides, const AtrousOptions& options,
   if (guides.surface.id(q.x, q.y) == 0) return 0.0;
   const glm::dvec3 normal = detail::guide_normal(guides, p);
   const double cosine = std::max(0.0, glm::dot(normal, detail::guide_normal(guides, q)));
+  if (!(cosine <= static_cast<double>(kLargestCosine))) return 0.0;
   const double depth = guides.surface.depth(p.x, p.y);
+  if (!(depth > 0.0)) return 0.0;
   const double plane = std::abs(
       glm::dot(normal, detail::guide_position(guides, q) - detail::guide_position(guides, p)));
   const double own = image.luminance(p.x, p.y);

@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "frame/usable_surface.h"
 #include "spatial/guided_filter.h"
 
 namespace eigenlight::reference {
@@ -19,10 +20,7 @@ struct WindowFit {
 };
 
 inline bool has_surface(const Frame& frame, int x, int y) {
-  const auto& s = frame.surface;
-  const bool normal = std::isfinite(s.normal[0](x, y)) && std::isfinite(s.normal[1](x, y)) &&
-                      std::isfinite(s.normal[2](x, y));
-  return s.id(x, y) != 0 && s.depth(x, y) > 0.0f && std::isfinite(s.depth(x, y)) && normal;
+  return is_usable_surface(frame.surface, x, y);
 }
 
 inline Guide guide_at(const Frame& frame, Guides guides, int x, int y) {

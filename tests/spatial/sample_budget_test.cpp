@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "frame/float_traps.h"
 #include "tests/support/extents.h"
 #include "tests/support/random_frames.h"
 
@@ -155,6 +156,7 @@ TEST(SampleBudget, CountsThePixelsItServes) {
 }
 
 TEST(SampleBudget, RefusesOtherExtentsAndBadOptions) {
+  const FloatTrapsOff nan_is_meant;
   Scene scene({65, 17});
   SampleBudget other({64, 17}, {});
   EXPECT_THROW((void)other.process(scene.frame, scene.age, scene.extra), std::invalid_argument);
