@@ -8,21 +8,33 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "frame/float_traps.h"
+
 namespace eigenlight {
 namespace {
 
 using nlohmann::json;
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
 /// Closed range of numbers, and how a message words it.
 struct Range {
   float low, high;
   const char* expected;
+
+  /// Whether the number is in the range, and still is as a float.
+  [[nodiscard]] bool holds(double number) const {
+    return std::abs(number) <= std::numeric_limits<float>::max() &&
+           number >= static_cast<double>(low) && number <= static_cast<double>(high);
+  }
 };
-constexpr Range kAny{-kInfinity, kInfinity, "a number"};
-constexpr Range kNonNegative{0.0f, kInfinity, "a number >= 0"};
-constexpr Range kPositive{std::numeric_limits<float>::min(), kInfinity, "a number > 0"};
+// Places and lengths: their squares, and the squares of their products, stay within float.
+constexpr float kFar = 1e9f;
+constexpr Range kCoordinate{-kFar, kFar, "a number in [-1e9, 1e9]"};
+constexpr Range kLength{1e-9f, kFar, "a number in [1e-9, 1e9]"};
+// Light that float can square, as the denoiser has it (kLargestLight), a thousand of them summed.
+constexpr Range kLight{0.0f, 1e15f, "a number in [0, 1e15]"};
+constexpr Range kExposure{1e-9f, kFar, "a number in [1e-9, 1e9]"};
+// Eleven days: the last frame stays within the frames that a run may name.
+constexpr Range kSeconds{-1e6f, 1e6f, "seconds in [-1e6, 1e6]"};
 
 /// A value of the file that knows its own path, for messages.
 class Field {
@@ -57,33 +69,31 @@ class Field {
     if (!value_->is_string()) fail("expected text");
     return value_->get<std::string>();
   }
-  [[nodiscard]] float number(const Range& range = kAny) const {
+  [[nodiscard]] float number(const Range& range) const {
     if (!value_->is_number()) fail(fmt::format("expected {}", range.expected));
-    const float number = value_->get<float>();
-    if (!std::isfinite(number) || number < range.low || number > range.high) {
+    if (!range.holds(value_->get<double>())) {
       fail(fmt::format("expected {}, got {}", range.expected, value_->dump()));
     }
-    return number;
+    return value_->get<float>();
   }
-  [[nodiscard]] glm::vec3 vec3(const Range& range = kAny) const {
-    const bool any = range.low == kAny.low;
-    const auto expected = any ? std::string("expected 3 numbers")
-                              : fmt::format("expected 3 numbers, each {}", range.expected);
+  [[nodiscard]] glm::vec3 vec3(const Range& range = kCoordinate) const {
+    const auto expected = fmt::format("expected 3 numbers, each {}", range.expected);
     if (!value_->is_array() || value_->size() != 3) fail(expected);
     glm::vec3 v(0.0f);
     for (int c = 0; c < 3; ++c) {
       const json& item = (*value_)[static_cast<std::size_t>(c)];
       if (!item.is_number()) fail(expected);
+      if (!range.holds(item.get<double>())) fail(expected);
       v[c] = item.get<float>();
-      if (!std::isfinite(v[c]) || v[c] < range.low || v[c] > range.high) fail(expected);
     }
     return v;
   }
   /// A vector that is not zero, made unit.
   [[nodiscard]] glm::vec3 direction() const {
-    const glm::vec3 v = vec3();
-    if (!(dot(v, v) > 0.0f)) fail("expected a direction, got 0, 0, 0");
-    return normalize(v);
+    // In double, where no square of a float underflows.
+    const glm::dvec3 v(vec3());
+    if (v == glm::dvec3(0.0)) fail("expected a direction, got 0, 0, 0");
+    return glm::vec3(normalize(v));
   }
 
  private:
@@ -96,8 +106,11 @@ void read_camera(const Field& camera, SceneDescription& scene) {
   if (camera.has("up")) scene.up = camera["up"].direction();
   const Field keyframes = camera["keyframes"];
   for (const Field& item : keyframes.items()) {
-    const CameraKey key{item["t"].number(), item["eye"].vec3(), item["look_at"].vec3()};
-    if (key.eye == key.look_at) item["look_at"].fail("expected a point other than eye");
+    const CameraKey key{item["t"].number(kSeconds), item["eye"].vec3(), item["look_at"].vec3()};
+    // Squares of shorter ways have lost digits, or are 0.
+    if (distance(key.eye, key.look_at) < 1e-15f) {
+      item["look_at"].fail("expected a point other than eye");
+    }
     if (!scene.camera_path.empty() && !(key.seconds > scene.camera_path.back().seconds)) {
       item["t"].fail("expected seconds after those of the key before");
     }
@@ -107,7 +120,7 @@ void read_camera(const Field& camera, SceneDescription& scene) {
 }
 
 void read_sun(const Field& light, Lights& lights) {
-  SunLight sun{light["direction_to_light"].direction(), light["irradiance"].vec3(kNonNegative)};
+  SunLight sun{light["direction_to_light"].direction(), light["irradiance"].vec3(kLight)};
   if (light.has("angular_diameter_degrees")) {
     sun.angular_diameter =
         light["angular_diameter_degrees"].number({0.0f, 90.0f, "degrees in [0, 90]"});
@@ -117,10 +130,10 @@ void read_sun(const Field& light, Lights& lights) {
 
 void read_area_rect(const Field& light, Lights& lights) {
   const AreaRect rect{light["center"].vec3(), light["half_u"].vec3(), light["half_v"].vec3(),
-                      light["radiance"].vec3(kNonNegative)};
+                      light["radiance"].vec3(kLight)};
   const glm::vec3 normal = cross(rect.half_u, rect.half_v);
-  if (!(dot(normal, normal) > 0.0f)) {
-    light["half_v"].fail("expected a vector not parallel to half_u");
+  if (dot(normal, normal) < std::numeric_limits<float>::min()) {
+    light["half_v"].fail("expected a vector not parallel to half_u, and an area above 1e-18");
   }
   lights.rects.push_back(rect);
 }
@@ -130,23 +143,26 @@ void read_light(const Field& light, SceneDescription& scene) {
   if (type == "sun") {
     read_sun(light, scene.lights);
   } else if (type == "sky") {
-    scene.lights.sky += light["radiance"].vec3(kNonNegative);
+    scene.lights.sky += light["radiance"].vec3(kLight);
   } else if (type == "area_rect") {
     read_area_rect(light, scene.lights);
   } else if (type == "sphere") {
-    scene.lights.spheres.push_back({light["center"].vec3(), light["radius"].number(kPositive),
-                                    light["radiance"].vec3(kNonNegative)});
+    scene.lights.spheres.push_back(
+        {light["center"].vec3(), light["radius"].number(kLength), light["radiance"].vec3(kLight)});
   } else if (type == "emissive_material") {
-    scene.emissive_materials[light["material"].text()] = light["radiance"].vec3(kNonNegative);
+    scene.emissive_materials[light["material"].text()] = light["radiance"].vec3(kLight);
   } else {
-    light["type"].fail(fmt::format(
-        "unknown light \"{}\", expected sun, sky, area_rect, sphere or emissive_material", type));
+    // As JSON has it: a line break in the text must not break the message.
+    light["type"].fail(
+        fmt::format("unknown light {}, expected sun, sky, area_rect, sphere or emissive_material",
+                    json(type).dump()));
   }
 }
 
 json parse_file(const std::filesystem::path& path) {
   std::ifstream in(path);
   if (!in) throw std::runtime_error(fmt::format("{}: cannot open scene file", path.string()));
+  const FloatTrapsOff numbers_may_overflow;
   try {
     return json::parse(in);
   } catch (const json::parse_error& error) {
@@ -175,7 +191,7 @@ SceneDescription read_scene_json(const std::filesystem::path& path) {
   }
   read_camera(root["camera"], scene);
   for (const Field& light : root["lights"].items()) read_light(light, scene);
-  if (root.has("exposure")) scene.exposure = root["exposure"].number(kPositive);
+  if (root.has("exposure")) scene.exposure = root["exposure"].number(kExposure);
   if (root.has("thin_glass_materials")) {
     for (const Field& name : root["thin_glass_materials"].items()) {
       scene.thin_glass_materials.push_back(name.text());
@@ -185,7 +201,7 @@ SceneDescription read_scene_json(const std::filesystem::path& path) {
     const Field environment = root["environment"];
     scene.environment = path.parent_path() / environment["file"].text();
     if (environment.has("scale")) {
-      scene.environment_scale = environment["scale"].number(kNonNegative);
+      scene.environment_scale = environment["scale"].number(kLight);
     }
   }
   return scene;

@@ -196,12 +196,50 @@ TEST_F(SceneFile, BadJsonNamesFileAndField) {
   EXPECT_EQ(json_error(camera + R"({"fov_y_degrees": 45, "keyframes": []}})"),
             "box/scene.json: camera.keyframes: expected at least one key");
   const std::string key = R"({"t": 0, "eye": [0, 0, 5], "look_at": [0, 0, 0]})";
-  EXPECT_EQ(json_error(camera + R"({"fov_y_degrees": 45, "keyframes": [)" + key +
-                       R"(, {"t": 1, "eye": [0, 5], "look_at": [0, 0, 0]}]}})"),
-            "box/scene.json: camera.keyframes[1].eye: expected 3 numbers");
+  EXPECT_EQ(
+      json_error(camera + R"({"fov_y_degrees": 45, "keyframes": [)" + key +
+                 R"(, {"t": 1, "eye": [0, 5], "look_at": [0, 0, 0]}]}})"),
+      "box/scene.json: camera.keyframes[1].eye: expected 3 numbers, each a number in [-1e9, 1e9]");
   EXPECT_THAT(
       json_error(camera + R"({"fov_y_degrees": 45, "keyframes": [)" + key + "," + key + "]}}"),
       HasSubstr("camera.keyframes[1].t: expected seconds after"));
+}
+
+// What float could hold, but not square or turn into frames.
+TEST_F(SceneFile, NumbersThatNobodyCanRenderWithAreRefused) {
+  const auto path_error = [this](const std::string& last_key) {
+    write("scene.json", R"({"file": "m.obj", "lights": [], "camera": {"fov_y_degrees": 45, )"
+                        R"("keyframes": [{"t": 0, "eye": [0, 0, 5], "look_at": [0, 0, 0]}, )" +
+                            last_key + "]}}");
+    return error("scene.json");
+  };
+  EXPECT_THAT(path_error(R"({"t": 1e9, "eye": [0, 0, 5], "look_at": [0, 0, 0]})"),
+              HasSubstr("keyframes[1].t: expected seconds in [-1e6, 1e6], got 1000000000.0"));
+  EXPECT_THAT(path_error(R"({"t": 1, "eye": [0, 0, 1e30], "look_at": [0, 0, 0]})"),
+              HasSubstr("keyframes[1].eye: expected 3 numbers, each a number in [-1e9, 1e9]"));
+  EXPECT_THAT(path_error(R"({"t": 1, "eye": [0, 0, 1e999], "look_at": [0, 0, 0]})"),
+              HasSubstr("broken JSON"));
+  EXPECT_THAT(path_error(R"({"t": 1, "eye": [0, 0, 1e-30], "look_at": [0, 0, 0]})"),
+              HasSubstr("keyframes[1].look_at: expected a point other than eye"));
+  write_scene(R"({"type": "sky", "radiance": [1e30, 1, 1]})");
+  EXPECT_THAT(error("scene.json"), HasSubstr("each a number in [0, 1e15]"));
+  write_scene(R"({"type": "area_rect", "center": [0, 0, 0], "half_u": [1e-15, 0, 0],
+                  "half_v": [0, 1e-15, 0], "radiance": [1, 1, 1]})");
+  EXPECT_THAT(error("scene.json"), HasSubstr("half_v: expected a vector not parallel"));
+}
+
+TEST_F(SceneFile, DirectionsOfAnyLengthAreMadeUnit) {
+  for (const char* direction : {"[0, 1e-30, 0]", "[0, 1e9, 0]", "[0, 1, 0]"}) {
+    write_scene(std::string(R"({"type": "sun", "irradiance": [1, 1, 1], "direction_to_light": )") +
+                direction + "}");
+    const Scene scene = load("scene.json");
+    EXPECT_EQ(scene.lights.suns.at(0).to_light, glm::vec3(0, 1, 0)) << direction;
+  }
+}
+
+TEST_F(SceneFile, MessagesStayOneLine) {
+  write_scene(R"({"type": "las\ner"})");
+  EXPECT_THAT(error("scene.json"), HasSubstr(R"(unknown light "las\ner", expected)"));
 }
 
 TEST_F(SceneFile, BadLightsAreNamed) {
@@ -212,9 +250,9 @@ TEST_F(SceneFile, BadLightsAreNamed) {
   EXPECT_THAT(light_error(R"({"type": "laser"})"),
               HasSubstr("lights[0].type: unknown light \"laser\", expected sun, sky"));
   EXPECT_THAT(light_error(R"({"type": "sky", "radiance": [1, -1, 1]})"),
-              HasSubstr("lights[0].radiance: expected 3 numbers, each a number >= 0"));
+              HasSubstr("lights[0].radiance: expected 3 numbers, each a number in [0, 1e15]"));
   EXPECT_THAT(light_error(R"({"type": "sphere", "center": [0, 0, 0], "radius": 0})"),
-              HasSubstr("lights[0].radius: expected a number > 0, got 0"));
+              HasSubstr("lights[0].radius: expected a number in [1e-9, 1e9], got 0"));
   EXPECT_THAT(light_error(R"({"type": "sun", "direction_to_light": [0, 0, 0]})"),
               HasSubstr("direction_to_light: expected a direction"));
   EXPECT_EQ(light_error(R"({"type": "emissive_material", "material": "x", "radiance": [1, 1, 1]})"),
