@@ -1,9 +1,10 @@
 # Sourced by sequences/demo and tests/run: installs what is missing, configures and builds release.
 # shellcheck shell=bash
 
+# install_packages [PACKAGE...]: those of packages.txt unless named.
 install_packages() {
-  local wanted missing=()
-  wanted=$(sed -e 's/#.*//' packages.txt)
+  local wanted package missing=()
+  wanted=${*:-$(sed -e 's/#.*//' packages.txt)}
   for package in $wanted; do
     dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null | grep -qx installed ||
       missing+=("$package")

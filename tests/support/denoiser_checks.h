@@ -9,6 +9,7 @@
 #include <memory>
 #include <string_view>
 
+#include "frame/tiles.h"
 #include "temporal/denoiser.h"
 #include "tests/support/analytic_source.h"
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "frame/float_traps.h"
 #include "temporal/eigen_denoiser.h"
 #include "tests/support/analytic_source.h"
 #include "tests/support/compare.h"
@@ -57,6 +58,7 @@ AnalyticOptions with_value(float value, int frame) {
 }
 
 TEST(EigenDenoiserStress, WhatIsNotFiniteIsCountedAndStaysAlone) {
+  const FloatTrapsOff nan_is_meant;
   const Pictures clean = run(with_value(1.0f, -1));
   for (const float bad : {kNan, -kInf}) {
     const Pictures hit = run(with_value(bad, 5));
@@ -76,6 +78,7 @@ TEST(EigenDenoiserStress, WhatIsNotFiniteIsCountedAndStaysAlone) {
 }
 
 TEST(EigenDenoiserStress, NewPixelsThatAreNotFiniteDoNotDarkenTheirNeighbors) {
+  const FloatTrapsOff nan_is_meant;
   const Pictures clean = run(with_value(1.0f, -1)), hit = run(with_value(kNan, 0));
   EXPECT_TRUE(all_finite(hit.frames[0]));
   EXPECT_EQ(hit.reports[0].non_finite_pixels, 1);
@@ -87,6 +90,7 @@ TEST(EigenDenoiserStress, NewPixelsThatAreNotFiniteDoNotDarkenTheirNeighbors) {
 }
 
 TEST(EigenDenoiserStress, HugeValuesDoNotStay) {
+  const FloatTrapsOff nan_is_meant;
   const Pictures clean = run(with_value(1.0f, -1));
   for (const float value : {-1e6f, 1e30f, 3e38f}) {
     const Pictures hit = run(with_value(value, 5));
@@ -113,6 +117,7 @@ TEST(EigenDenoiserStress, DenormalAndNegativeLightIsLightLikeAny) {
 }
 
 TEST(EigenDenoiserStress, FramesWithoutAnyUsablePixelAreSurvived) {
+  const FloatTrapsOff nan_is_meant;
   AnalyticOptions options{.extent = {65, 17}, .frames = 12};
   options.edit = [](Frame& frame) {
     if (frame.index == 0 || frame.index == 6) frame.indirect[2].fill(kNan);

@@ -8,6 +8,7 @@
 #include <limits>
 #include <vector>
 
+#include "frame/float_traps.h"
 #include "tests/support/analytic_source.h"
 #include "tests/support/compare.h"
 #include "tests/support/denoiser_checks.h"
@@ -276,6 +277,7 @@ TEST(EigenDenoiser, TargetsAgree) {
 }
 
 TEST(EigenDenoiser, RefusesBadOptions) {
+  const FloatTrapsOff nan_is_meant;
   const auto refused = [](const std::function<void(EigenOptions&)>& change) {
     EigenOptions parts;
     change(parts);

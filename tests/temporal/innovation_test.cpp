@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "frame/float_traps.h"
 #include "tests/reference/innovation.h"
 #include "tests/support/compare.h"
 #include "tests/support/extents.h"
@@ -185,6 +186,7 @@ TEST(Innovation, PerfectPredictionAgesAndHasNoVariance) {
 }
 
 TEST(InnovationOptions, RefusesWhatIsOutOfRange) {
+  const FloatTrapsOff nan_is_meant;
   const auto refused = [](float threshold, float max_age) {
     EXPECT_THROW((InnovationOptions{threshold, max_age}.validate()), std::invalid_argument);
   };

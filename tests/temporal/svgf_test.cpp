@@ -1,5 +1,6 @@
 #include "temporal/baselines/svgf.h"
 
+#include "frame/float_traps.h"
 #include "tests/reference/svgf.h"
 #include "tests/support/compare.h"
 #include "tests/support/denoiser_checks.h"
@@ -114,6 +115,7 @@ TEST(SvgfGeometryWeight, IsThatOfThePass) {
 }
 
 TEST(SvgfOptions, RefusesWhatIsOutOfRange) {
+  const FloatTrapsOff nan_is_meant;
   const auto refuses = [](auto change) {
     SvgfOptions options;
     change(options);

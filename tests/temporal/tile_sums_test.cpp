@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "frame/float_traps.h"
 #include "tests/reference/tile_sums.h"
 #include "tests/support/extents.h"
 #include "tests/support/random_frames.h"
@@ -38,6 +39,7 @@ void expect_sums_near(const TileSums& found, const TileSums& wanted, int bases) 
 }
 
 TEST(TileSums, AgreeWithTheTwinOnEveryTarget) {
+  const FloatTrapsOff nan_is_meant;
   for (const Extent extent : kSweepExtents) {
     const Frame frame = make_random_frame({.extent = extent}, 2);
     const Plane<float> variance = random_plane(extent, 5, 0.05f, 0.6f);
@@ -82,6 +84,7 @@ TEST(TileSums, AddToWhatIsThere) {
 
 // A pixel counts only with history and finite light: each reason alone leaves it out.
 TEST(TileSums, LeaveOutWhatCannotBeUsed) {
+  const FloatTrapsOff nan_is_meant;
   const Extent extent{5, 3};
   Frame frame = make_random_frame({.extent = extent, .sky = false, .non_finite = false}, 2);
   const Plane<float> variance = random_plane(extent, 5, 0.05f, 0.6f);
