@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "frame/float_traps.h"
 #include "spatial/pyramid_block.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -126,10 +127,12 @@ HWY_EXPORT(LoadBlock);
 HWY_EXPORT(LoadCoarse);
 
 void load_pyramid_block(const PyramidView& level, int x0, int y0, PyramidFineBlock& block) {
+  const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(LoadBlock)(level, x0, y0, block);
 }
 
 void load_coarser_block(const PyramidPlanes& level, const Tile& tile, PyramidCoarseBlock& block) {
+  const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(LoadCoarse)(level, tile, block);
 }
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "frame/float_traps.h"
 #include "spatial/pyramid_block.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -301,14 +302,17 @@ HWY_EXPORT(LastTile);
 
 void pyramid_down_tile(const PyramidView& fine, const GlobalIlluminationEdge& edge,
                        const Tile& tile, PyramidPlanes& coarse) {
+  const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(DownTile)(fine, edge, tile, coarse);
 }
 
 void pyramid_up_tile(const PyramidUpPass& up, const Tile& tile, Planes<4>& result) {
+  const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(UpTile)(up, tile, result);
 }
 
 void pyramid_last_tile(const PyramidUpPass& up, const Tile& tile, Planes<3>& out) {
+  const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(LastTile)(up, tile, out);
 }
 
