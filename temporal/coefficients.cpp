@@ -125,7 +125,7 @@ void solve_coefficients(std::span<const TileSums> sums, std::span<const double> 
           square > 0.0 ? std::max(0.0, 1.0 - options.noise * s.variance[k] / square) : 0.0;
       if (!expected.empty() && square > 0.0) {
         const double m = expected[static_cast<std::size_t>(index * bases + k)];
-        kept = std::max(kept, m / (m + s.variance[k]));
+        if (m > 0.0) kept = std::max(kept, m / (m + s.variance[k]));  // 0 / 0 in the dark
       }
       const double delta = kept * s.delta[k];
       out[static_cast<std::size_t>(k)] = static_cast<float>(k == 0 ? std::max(delta, -1.0) : delta);
