@@ -21,6 +21,11 @@ class BasisField {
     data_ = Plane<float>(extent, pixel_floats(bases));
   }
 
+  /// Makes room for another number of bases; what the pixels held is lost if it differs.
+  void reshape(int bases) {
+    if (bases != bases_) *this = BasisField(extent(), bases);
+  }
+
   /// Floats from one pixel to the next for K bases.
   [[nodiscard]] static constexpr int pixel_floats(int bases) { return (3 * bases + 1 + 3) / 4 * 4; }
 

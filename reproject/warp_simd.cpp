@@ -12,9 +12,10 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// A pixel is a whole number of groups of four floats, so up to four lanes always fit.
-void WarpBases(const BasisField& from, const TapSegment& taps, const Tile& row, BasisField& to) {
-  const hn::CappedTag<float, 4> d;
+// `kWidth` divides the floats of a pixel.
+template <int kWidth>
+void WarpPixels(const BasisField& from, const TapSegment& taps, const Tile& row, BasisField& to) {
+  const hn::CappedTag<float, kWidth> d;
   constexpr int kLine = static_cast<int>(Plane<float>::kLine / sizeof(float));
   const int lanes = static_cast<int>(hn::Lanes(d));
   const int floats = from.pixel_floats();
@@ -42,6 +43,17 @@ void WarpBases(const BasisField& from, const TapSegment& taps, const Tile& row, 
       const auto lower = hn::MulAdd(w2, hn::Load(d, p[2] + j), hn::Mul(w3, hn::Load(d, p[3] + j)));
       hn::Store(hn::Add(upper, lower), d, out + j);
     }
+  }
+}
+
+// A pixel is a whole number of groups of four floats; the widest vectors that fit.
+void WarpBases(const BasisField& from, const TapSegment& taps, const Tile& row, BasisField& to) {
+  if (from.pixel_floats() % 16 == 0) {
+    WarpPixels<16>(from, taps, row, to);
+  } else if (from.pixel_floats() % 8 == 0) {
+    WarpPixels<8>(from, taps, row, to);
+  } else {
+    WarpPixels<4>(from, taps, row, to);
   }
 }
 

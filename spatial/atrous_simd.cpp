@@ -7,6 +7,7 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "spatial/atrous_simd.cpp"
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -43,6 +44,21 @@ void SmoothVariance(const Plane<float>& variance, int x0, int count, int y, floa
   const float* lower = variance.row(std::min(y + 1, variance.height() - 1));
   float column[kAtrousWidth + 2];
   const auto sum = [&](int x) { return upper[x] + 2.0f * middle[x] + lower[x]; };
+  if (x0 > 0 && x0 + count < variance.width()) {
+    const F d;
+    const int lanes = static_cast<int>(hn::Lanes(d));
+    const VF two = hn::Set(d, 2.0f), scale = hn::Set(d, 1.0f / 16.0f);
+    const auto vector = [&](int x) {
+      return hn::MulAdd(two, hn::LoadU(d, middle + x),
+                        hn::Add(hn::LoadU(d, upper + x), hn::LoadU(d, lower + x)));
+    };
+    for (int i = 0; i < count; i += lanes) {
+      const int x = x0 + i;
+      const VF sides = hn::Add(vector(x - 1), vector(x + 1));
+      hn::Store(hn::Mul(scale, hn::MulAdd(two, vector(x), sides)), d, out + i);
+    }
+    return;
+  }
   column[0] = sum(std::max(x0 - 1, 0));
   for (int i = 0; i < count; ++i) column[i + 1] = sum(x0 + i);
   column[count + 1] = sum(std::min(x0 + count, variance.width() - 1));
@@ -199,6 +215,17 @@ void StoreCenter(const AtrousPass& pass, const Center& at, int x, int y) {
   store(hn::Mul(at.variance, hn::Mul(scale, scale)), pass.variance, pass.out_variance);
 }
 
+// Rows of a tile are too short for the hardware to foresee the next one that taps will reach.
+void Prefetch(const AtrousPass& pass, const Tile& tile, int y) {
+  constexpr int kStep = static_cast<int>(Plane<float>::kLine / sizeof(float));
+  const GBuffer& surface = pass.guides.surface;
+  for (const Plane<float>* plane :
+       {&pass.color[0], &pass.color[1], &pass.color[2], &pass.variance, &surface.normal[0],
+        &surface.normal[1], &surface.normal[2], &surface.depth}) {
+    for (int x = tile.x0; x < tile.x1; x += kStep) hwy::Prefetch(plane->row(y) + x);
+  }
+}
+
 template <int kRadius>
 void FilterTile(const AtrousPass& pass, const Tile& tile) {
   const F d;
@@ -206,6 +233,7 @@ void FilterTile(const AtrousPass& pass, const Tile& tile) {
   const Extent extent = pass.variance.extent();
   alignas(64) Line smooth_variance = {};
   for (int y = tile.y0; y < tile.y1; ++y) {
+    if (y + reach + 1 < extent.height) Prefetch(pass, tile, y + reach + 1);
     SmoothVariance(pass.variance, tile.x0, tile.x1 - tile.x0, y, smooth_variance);
     for (int x = tile.x0; x < tile.x1; x += lanes) {
       Center at = LoadCenter(pass, x, y, hn::Load(d, smooth_variance + (x - tile.x0)));

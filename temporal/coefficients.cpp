@@ -99,12 +99,16 @@ void CoefficientField::row(const Tile& row, int k, float* out) const {
     blended[i] = upper + fy * (lower - upper);
   }
 
-  const float steady = k == 0 ? 1.0f : 0.0f;
-  for (int x = row.x0; x < row.x1; ++x) {
-    // In [-0.5, 0.5) across the tile.
-    const float t = (static_cast<float>(x - column * kCoefficientTile) + 0.5f) * kInverse - 0.5f;
-    const float neighbor = t < 0.0f ? blended[0] : blended[2];
-    out[x - row.x0] = steady + blended[1] + std::abs(t) * (neighbor - blended[1]);
+  // Half of the way to the neighbor at the tile's edges, none in its middle.
+  const float own = (k == 0 ? 1.0f : 0.0f) + blended[1];
+  const float left = blended[0] - blended[1], right = blended[2] - blended[1];
+  const int begin = row.x0 - column * kCoefficientTile, end = row.x1 - column * kCoefficientTile;
+  const int middle = std::clamp(kCoefficientTile / 2, begin, end);
+  for (int i = begin; i < middle; ++i) {
+    out[i - begin] = own + (0.5f - (static_cast<float>(i) + 0.5f) * kInverse) * left;
+  }
+  for (int i = middle; i < end; ++i) {
+    out[i - begin] = own + ((static_cast<float>(i) + 0.5f) * kInverse - 0.5f) * right;
   }
 }
 

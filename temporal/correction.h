@@ -4,35 +4,28 @@
 #include "frame/frame.h"
 #include "spatial/atrous.h"
 #include "temporal/coefficients.h"
+#include "temporal/residual_cells.h"
 
 namespace eigenlight {
 
 struct CorrectionOptions {
   /// [0, 1000] variances of the smoothed residual that count as chance.
   float significance = 6.0f;
-  int passes = 4;  ///< [1, 6] of the a-trous filter that smooths the residual
-  int radius = 2;  ///< 1 or 2: its kernel
+  int passes = 4;  ///< [1, 6] of the a-trous filter over cells that smooths the residual
 
   void validate() const;  ///< throws std::invalid_argument naming the field
 };
 
-struct CorrectionInputs {
-  const Frame& guides;
-  const Planes<3>& light;         ///< u
-  const Plane<float>& confirmed;  ///< 1 where there is history and u is usable, else 0
-  const Plane<float>& age;        ///< n, of the history
-  const Plane<float>& samples;    ///< s, this frame's samples over its regular number
-  const Plane<float>& variance;   ///< v, of one frame's luminance
-};
-
-/// The smoothed innovation. r = u - prediction has variance v (1/s + 1/n); an edge-avoiding filter
-/// that looks at geometry only turns it into m with variance q, and
-///   correction = m f g,   f = max(0, 1 - significance * q / luminance(m)^2), averaged over 5 x 5,
+/// The smoothed innovation. r = u - prediction has variance v (1/s + 1/n); averaged over cells of
+/// 2 x 2 pixels, an edge-avoiding filter that looks at geometry only turns it into m with variance
+/// q, and
+///   correction = m f g,   f = max(0, 1 - significance * q / luminance(m)^2), averaged over 3 x 3
+///   cells,
 /// goes to the prediction. A light that changes in a way no basis knows yet is so followed within
 /// the frame, by its spatial smoothness instead of its history.
 ///
 /// g in [0, 1] opens where light does change: it grows with the share of 8 x 8 blocks whose mean
-/// residual exceeds two of its standard deviations, over a coefficient tile and its neighbors,
+/// residual exceeds three of its standard deviations, over a coefficient tile and its neighbors,
 /// interpolated between tiles. Where it is closed nothing is filtered.
 class Correction {
  public:
@@ -41,36 +34,32 @@ class Correction {
   /// Adds to `prediction`, subtracts from `residual` (luminance of u - prediction), and leaves what
   /// it added in correction(). Returns the share of confirmed pixels corrected by more than half.
   double process(const CorrectionInputs& in, Planes<3>& prediction, Plane<float>& residual);
-  [[nodiscard]] const Planes<3>& correction() const { return smooth_; }
-  /// Pixels of the last frame that were not filtered because no light changed around them.
+  /// Zero where nothing was added.
+  [[nodiscard]] const Planes<3>& correction() const { return correction_; }
+  /// Whether the last frame added anything in a tile of the coefficients' grid.
+  [[nodiscard]] bool is_open(int tile) const { return open_[static_cast<std::size_t>(tile)] != 0; }
+  /// Pixels of the last frame in tiles that were not open: nothing was filtered there.
   [[nodiscard]] std::int64_t skipped() const { return skipped_; }
 
  private:
-  /// Blocks of a coefficient tile: those with enough confirmed pixels, and the significant ones.
-  struct Blocks {
-    int all = 0, significant = 0;
-  };
-
-  [[nodiscard]] Blocks test_blocks(const CorrectionInputs& in, const Plane<float>& residual,
-                                   const Tile& tile) const;
   [[nodiscard]] bool open_gates();
-  void choose_tiles();
-  void load_residual(const CorrectionInputs& in, const Planes<3>& prediction, const Tile& tile);
-  void find_factor(const Tile& tile);
-  void apply(const CorrectionInputs& in, const Tile& tile, Planes<3>& prediction,
-             Plane<float>& residual);
+  void close_tile(const Tile& tile);
+  void choose_cells();
+  void find_factor(const Tile& cells);
+  void weigh_cells(const Tile& cells);
 
   CorrectionOptions options_;
-  TileGrid grid_;
+  CoefficientField gate_;  // g - 1 per tile
+  ResidualCells cells_;
+  TileGrid grid_;  // of cells
   Atrous filter_;
-  Planes<3> smooth_;
-  Plane<float> noise_, factor_;
-  CoefficientField gate_;                            // g - 1 per tile
-  std::vector<Blocks> blocks_;                       // per coefficient tile
-  std::vector<std::uint8_t> wanted_;                 // per stage tile
-  std::vector<std::int64_t> confirmed_, corrected_;  // pixels per coefficient tile
+  Planes<3> correction_;
+  Plane<float> factor_;                        // f of each cell
+  std::vector<BlockCounts> blocks_;            // per coefficient tile
+  std::vector<std::uint8_t> open_, was_open_;  // per coefficient tile
+  std::vector<std::uint8_t> wanted_, loaded_;  // per tile of cells
+  std::vector<std::int64_t> corrected_;        // confirmed pixels per tile of cells
   std::int64_t skipped_ = 0;
-  bool is_zero_ = true;  // smooth_ holds zeros
 };
 
 }  // namespace eigenlight

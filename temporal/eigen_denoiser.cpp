@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "reproject/warp.h"
 #include "temporal/predict.h"
+#include "temporal/signal.h"
 #include "temporal/stage_clock.h"
 #include "temporal/update.h"
 
@@ -13,7 +13,7 @@ namespace eigenlight {
 namespace {
 
 // Changes when the saved bytes do.
-constexpr int kStateVersion = 2;
+constexpr int kStateVersion = 3;
 
 }  // namespace
 
@@ -35,8 +35,8 @@ EigenDenoiser::EigenDenoiser(const DenoiserOptions& options, const EigenOptions&
       extent_(options.extent),
       tiles_(extent_, kCoefficientTile, kCoefficientTile),
       surfaces_(extent_),
-      bases_(extent_, options.bases),
-      warped_bases_(extent_, options.bases),
+      bases_(extent_, 1),
+      warped_bases_(extent_, 1),
       variance_(extent_),
       warped_variance_(extent_),
       memory_(extent_, options.bases),
@@ -70,7 +70,7 @@ const Planes<3>* EigenDenoiser::step(FrameSource& source) {
   start_frame(clock.lap());
   warp_history();
   report_[Stage::kReproject] = clock.lap();
-  const std::int64_t planned = plan_samples();
+  const std::int64_t planned = budget_.process(frame_, old_age_, extra_).samples;
   report_[Stage::kBudget] = clock.lap();
   resample(source, planned);
   report_[Stage::kResample] = clock.lap();
@@ -110,23 +110,27 @@ void EigenDenoiser::warp_history() {
   const bool still = !report_.cut && frame_.is_static;
   std::fill(sums_.begin(), sums_.end(), TileSums{});
   if (report_.cut) {
+    memory_.reset();
+    bases_.reshape(memory_.active());
     bases_.data().fill(0.0f);
     variance_.fill(0.0f);
-    memory_.reset();
   }
+  warped_bases_.reshape(bases_.bases());
   const bool moving = !report_.cut && !still;
-  const int active = memory_.active();
-  for_each_tile(tiles_, [&](const Tile& tile) {
-    if (moving) warp_tile(tile);
-    if (report_.cut || is_empty(tile)) return;
-    accumulate_tile(
-        {moving ? warped_bases_ : bases_, frame_, moving ? warped_variance_ : variance_, active},
-        tile, sums_[static_cast<std::size_t>(tile.index)]);
-  });
-  if (moving) {
+  if (!moving) {
     std::swap(bases_, warped_bases_);
     std::swap(variance_, warped_variance_);
   }
+  for_each_tile(tiles_, [&](const Tile& tile) {
+    if (moving) warp_tile(tile);
+    for (int y = tile.y0; y < tile.y1; ++y) {
+      for (int x = tile.x0; x < tile.x1; ++x) old_age_(x, y) = warped_bases_.age(x, y);
+    }
+    if (report_.cut || is_empty(tile)) return;
+    accumulate_tile({warped_bases_, frame_, warped_variance_, memory_.active()}, tile,
+                    sums_[static_cast<std::size_t>(tile.index)]);
+  });
+  std::swap(variance_, warped_variance_);
   if (still) report_.skipped_warp = static_cast<std::int64_t>(extent_.pixels());
 }
 
@@ -148,20 +152,17 @@ void EigenDenoiser::warp_tile(const Tile& tile) {
   }
 }
 
-// Samples that the budget grants to young pixels.
-std::int64_t EigenDenoiser::plan_samples() {
-  for_each_tile(tiles_, [&](const Tile& tile) {
-    for (int y = tile.y0; y < tile.y1; ++y) {
-      for (int x = tile.x0; x < tile.x1; ++x) old_age_(x, y) = bases_.age(x, y);
-    }
-  });
-  return budget_.process(frame_, old_age_, extra_).samples;
-}
-
 void EigenDenoiser::resample(FrameSource& source, std::int64_t planned) {
   const bool resampled = planned > 0 && source.resample(extra_, frame_, extra_mean_);
   if (resampled) report_.extra_samples = planned;
-  for_each_tile(tiles_, [&](const Tile& tile) { merge_samples(tile, resampled); });
+  for_each_tile(tiles_, [&](const Tile& tile) {
+    const SignalCounts found = merge_samples(
+        {frame_, resampled ? &extra_ : nullptr, resampled ? &extra_mean_ : nullptr, old_age_}, tile,
+        {light_, samples_});
+    TileCount& count = counts_[static_cast<std::size_t>(tile.index)];
+    count.fresh = found.fresh;
+    count.non_finite = found.non_finite;
+  });
   for (const TileCount& count : counts_) {
     report_.surface_pixels += count.surface;
     report_.new_pixels += count.fresh;
@@ -169,37 +170,11 @@ void EigenDenoiser::resample(FrameSource& source, std::int64_t planned) {
   }
 }
 
-// The mean of all samples of each pixel; what is not finite is left out.
-void EigenDenoiser::merge_samples(const Tile& tile, bool resampled) {
-  TileCount& count = counts_[static_cast<std::size_t>(tile.index)];
-  const float regular = static_cast<float>(std::max(frame_.spp, 1));
-  for (int y = tile.y0; y < tile.y1; ++y) {
-    for (int x = tile.x0; x < tile.x1; ++x) {
-      const bool surface = frame_.surface.id(x, y) != 0;
-      const float extra = resampled ? static_cast<float>(extra_(x, y)) : 0.0f;
-      const float scale = 1.0f / (regular + extra);
-      float sum = 0.0f;
-      for (std::size_t c = 0; c < 3; ++c) {
-        const float more = extra > 0.0f ? extra * extra_mean_[c](x, y) : 0.0f;
-        light_[c](x, y) = (regular * frame_.indirect[c](x, y) + more) * scale;
-        sum += std::abs(light_[c](x, y));
-      }
-      const bool usable = surface && std::islessequal(sum, kLargestLight);  // NaN fails too
-      if (!usable) {
-        for (auto& plane : light_) plane(x, y) = std::numeric_limits<float>::quiet_NaN();
-      }
-      samples_(x, y) = usable ? (regular + extra) / regular : 0.0f;
-      count.fresh += surface && old_age_(x, y) == 0.0f ? 1 : 0;
-      count.non_finite += surface && !usable ? 1 : 0;
-    }
-  }
-}
-
 void EigenDenoiser::project() {
   solve_coefficients(sums_, memory_.expected(), options_.shrink, coefficients_);
   coefficients_.set_used(memory_.active());
   for_each_tile(tiles_, [&](const Tile& tile) {
-    predict_tile(bases_, coefficients_, light_, tile,
+    predict_tile(warped_bases_, coefficients_, light_, tile,
                  {prediction_, residual_, confirmed_, old_age_});
   });
   const double corrected = correction_.process(
@@ -223,6 +198,7 @@ void EigenDenoiser::project() {
 
 void EigenDenoiser::update() {
   const int active = memory_.active();
+  bases_.reshape(std::max(active, newborn_ + 1));
   for_each_tile(tiles_, [&](const Tile& tile) {
     if (is_empty(tile)) {
       clear_tile(tile);
@@ -230,10 +206,14 @@ void EigenDenoiser::update() {
     }
     innovation_tile({residual_, confirmed_, old_age_, samples_}, options_.innovation, tile,
                     {new_age_, variance_});
-    fresh_variance(tile);
-    update_tile({coefficients_, learning_, prediction_, correction_.correction(), light_, samples_,
-                 old_age_, new_age_, active, newborn_},
-                tile, bases_, output_);
+    fresh_variance(frame_, samples_, old_age_, tile, variance_);
+    const Planes<3>* correction =
+        correction_.is_open(tile.index) ? &correction_.correction() : nullptr;
+    update_tile({coefficients_, learning_, prediction_, correction, light_, samples_, old_age_,
+                 new_age_, active, newborn_},
+                tile, warped_bases_, {bases_, output_});
+    estimate_variance({frame_.surface.id, new_age_, variance_, options_.young}, tile,
+                      {output_variance_, young_});
   });
   if (newborn_ > 0) memory_.born(newborn_);
   retire_bases();
@@ -244,6 +224,9 @@ void EigenDenoiser::clear_tile(const Tile& tile) {
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (auto& plane : output_) std::fill(plane.at(tile.x0, y), plane.row(y) + tile.x1, 0.0f);
     std::fill(new_age_.at(tile.x0, y), new_age_.row(y) + tile.x1, 0.0f);
+    std::fill(bases_.pixel(tile.x0, y), bases_.pixel(tile.x1 - 1, y) + bases_.pixel_floats(), 0.0f);
+    std::fill(output_variance_.at(tile.x0, y), output_variance_.row(y) + tile.x1, 0.0f);
+    std::fill(young_.at(tile.x0, y), young_.row(y) + tile.x1, std::uint8_t{0});
   }
 }
 
@@ -260,46 +243,9 @@ void EigenDenoiser::retire_bases() {
   }
 }
 
-// One frame's variance at new pixels: that of luminance over the 7 x 7 pixels around, whose
-// structure counts as noise until history tells them apart.
-void EigenDenoiser::fresh_variance(const Tile& tile) {
-  constexpr int kRadius = 3;
-  const auto& u = frame_.indirect;
-  for (int y = tile.y0; y < tile.y1; ++y) {
-    for (int x = tile.x0; x < tile.x1; ++x) {
-      if (old_age_(x, y) > 0.0f || frame_.surface.id(x, y) == 0) continue;
-      double count = 0.0, sum = 0.0, square = 0.0;
-      for (int j = std::max(y - kRadius, 0); j <= std::min(y + kRadius, extent_.height - 1); ++j) {
-        for (int i = std::max(x - kRadius, 0); i <= std::min(x + kRadius, extent_.width - 1); ++i) {
-          if (!(samples_(i, j) > 0.0f)) continue;
-          const double l = 0.2126 * u[0](i, j) + 0.7152 * u[1](i, j) + 0.0722 * u[2](i, j);
-          count += 1.0;
-          sum += l;
-          square += l * l;
-        }
-      }
-      const double mean = count > 0.0 ? sum / count : 0.0;
-      variance_(x, y) =
-          count > 1.0 ? static_cast<float>(std::max(square / count - mean * mean, 0.0)) : 0.0f;
-    }
-  }
-}
-
 void EigenDenoiser::filter() {
-  for_each_tile(tiles_, [&](const Tile& tile) { prepare_filter(tile); });
   fill_young();
   report_.skipped_filter = atrous_.process(frame_, options_.quiet, output_, output_variance_);
-}
-
-// Variances of the estimate, and which pixels are young.
-void EigenDenoiser::prepare_filter(const Tile& tile) {
-  for (int y = tile.y0; y < tile.y1; ++y) {
-    for (int x = tile.x0; x < tile.x1; ++x) {
-      const float age = new_age_(x, y);
-      output_variance_(x, y) = age > 0.0f ? variance_(x, y) / age : 0.0f;
-      young_(x, y) = frame_.surface.id(x, y) != 0 && age < options_.young ? 1 : 0;
-    }
-  }
 }
 
 // Young pixels lean on what their surroundings say of such a surface (Bauszat 2011). The share that
@@ -325,7 +271,8 @@ void EigenDenoiser::fill_young() {
 void EigenDenoiser::save(StateWriter& out) const {
   out.value("eigenlight", kStateVersion);
   surfaces_.save(out);
-  out.value("bases", bases_.bases());
+  out.value("bases", memory_.bases());
+  out.value("bases in use", bases_.bases());
   out.plane("basis values", bases_.data());
   out.plane("variance", variance_);
   memory_.save(out);
@@ -342,7 +289,10 @@ void EigenDenoiser::load(StateReader& in) {
   expect("version", version, kStateVersion);
   surfaces_.load(in);
   in.value("bases", bases);
-  expect("bases", bases, bases_.bases());
+  expect("bases", bases, memory_.bases());
+  in.value("bases in use", bases);
+  if (bases < 1 || bases > memory_.bases()) expect("bases in use", bases, memory_.active());
+  bases_.reshape(bases);
   in.plane("basis values", bases_.data());
   in.plane("variance", variance_);
   memory_.load(in);

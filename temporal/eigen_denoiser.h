@@ -57,17 +57,13 @@ class EigenDenoiser final : public Denoiser {
   [[nodiscard]] bool is_empty(const Tile& tile) const;
   void warp_history();
   void warp_tile(const Tile& tile);
-  [[nodiscard]] std::int64_t plan_samples();
   void resample(FrameSource& source, std::int64_t planned);
-  void merge_samples(const Tile& tile, bool resampled);
   void project();
   void retire_bases();
   void update();
   void clear_tile(const Tile& tile);
   void filter();
   void fill_young();
-  void prepare_filter(const Tile& tile);
-  void fresh_variance(const Tile& tile);
 
   struct TileCount {
     std::int64_t surface = 0, fresh = 0, non_finite = 0;
@@ -79,7 +75,8 @@ class EigenDenoiser final : public Denoiser {
   Frame frame_;
   FrameReport report_;
 
-  // History: of the frame before, once warped of this one.
+  // History: warped and variance hold that of the frame before, brought to this one. Bases have
+  // room for those in use only.
   SurfaceHistory surfaces_;
   BasisField bases_, warped_bases_;
   Plane<float> variance_, warped_variance_;  // of one frame's luminance

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 
 #include "reproject/taps.h"
 #include "temporal/innovation.h"
@@ -13,32 +12,59 @@ HWY_BEFORE_NAMESPACE();
 namespace eigenlight::HWY_NAMESPACE {
 namespace {
 
+namespace hn = hwy::HWY_NAMESPACE;
+using F = hn::ScalableTag<float>;
+
 constexpr int kRadius = 4;
-constexpr int kWidth = kSegment + 2 * kRadius;
-constexpr int kRows = 2 * kRadius + 1;
+constexpr int kWindow = 2 * kRadius + 1;
+// A row of a tile, what the window reaches on both sides, and what whole vectors read beyond.
+constexpr int kWidth = kSegment + 2 * kRadius + 64;
 
 // Sums of count, e and e^2: over a row of the window, then over the window.
 struct Sums {
-  alignas(64) std::array<float, kSegment> count{}, mean{}, square{};
+  alignas(64) float count[kSegment], mean[kSegment], square[kSegment];
 };
+
+// Nine neighbors in four additions: sums of two, of four, of eight, and the ninth. Overwrites the
+// values, of which `count` + 8 are meant; reads up to two vectors more.
+void SumNine(float* values, int count, float* sums) {
+  const F d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  alignas(64) float pairs[kWidth], fours[kWidth];
+  for (int i = 0; i < count + 7; i += lanes) {
+    hn::Store(hn::Add(hn::Load(d, values + i), hn::LoadU(d, values + i + 1)), d, pairs + i);
+  }
+  for (int i = 0; i < count + 5; i += lanes) {
+    hn::Store(hn::Add(hn::Load(d, pairs + i), hn::LoadU(d, pairs + i + 2)), d, fours + i);
+  }
+  for (int i = 0; i < count; i += lanes) {
+    const auto eight = hn::Add(hn::Load(d, fours + i), hn::LoadU(d, fours + i + 4));
+    hn::Store(hn::Add(eight, hn::LoadU(d, values + i + 8)), d, sums + i);
+  }
+}
 
 // Horizontal window sums of row y for the pixels of the tile.
 void SumRow(const InnovationInputs& in, const Tile& tile, int y, Sums& sums) {
-  std::array<float, kWidth> count{}, value{};
+  const F d;
+  const int lanes = static_cast<int>(hn::Lanes(d)), count = tile.x1 - tile.x0;
+  alignas(64) float confirmed[kWidth], value[kWidth], square[kWidth];
   const int first = std::max(tile.x0 - kRadius, 0);
   const int last = std::min(tile.x1 + kRadius, in.residual.width());
-  const auto shift = static_cast<std::size_t>(first - (tile.x0 - kRadius));
-  std::copy(in.confirmed.at(first, y), in.confirmed.row(y) + last, count.begin() + shift);
-  std::copy(in.residual.at(first, y), in.residual.row(y) + last, value.begin() + shift);
-  sums = {};
-  const auto width = static_cast<std::size_t>(tile.x1 - tile.x0);
-  for (std::size_t j = 0; j < kRows; ++j) {
-    for (std::size_t i = 0; i < width; ++i) {
-      sums.count[i] += count[i + j];
-      sums.mean[i] += value[i + j];
-      sums.square[i] += value[i + j] * value[i + j];
-    }
+  const int shift = first - (tile.x0 - kRadius), end = shift + last - first;
+  // Nothing lies to the left and to the right of the image.
+  for (int i = 0; i < kRadius; ++i) confirmed[i] = value[i] = square[i] = 0.0f;
+  for (int i = 0; i < last - first; i += lanes) {
+    const auto inside = hn::FirstN(d, static_cast<std::size_t>(last - first - i));
+    const auto e = hn::IfThenElseZero(inside, hn::LoadU(d, in.residual.at(first, y) + i));
+    const auto used = hn::IfThenElseZero(inside, hn::LoadU(d, in.confirmed.at(first, y) + i));
+    hn::StoreU(used, d, confirmed + shift + i);
+    hn::StoreU(e, d, value + shift + i);
+    hn::StoreU(hn::Mul(e, e), d, square + shift + i);
   }
+  for (int i = end; i < count + 2 * kRadius; ++i) confirmed[i] = value[i] = square[i] = 0.0f;
+  SumNine(confirmed, count, sums.count);
+  SumNine(value, count, sums.mean);
+  SumNine(square, count, sums.square);
 }
 
 // New ages and variances of a row of pixels from their windows. Written without branches, so that
@@ -53,14 +79,13 @@ void FinishRow(const InnovationInputs& in, const InnovationOptions& options, con
   const auto larger = [](float a, float b) { return a > b ? a : b; };
   const auto smaller = [](float a, float b) { return a < b ? a : b; };
   for (int i = 0; i < row.x1 - row.x0; ++i) {
-    const auto slot = static_cast<std::size_t>(i);
-    const float age = old_age[i], samples = all_samples[i], count = window.count[slot];
+    const float age = old_age[i], samples = all_samples[i], count = window.count[i];
     const bool confirmed = all_confirmed[i] > 0.0f, alone = count < 2.0f;
     // Stand-ins keep the arithmetic of pixels finite whose result is not used.
     const float n = confirmed ? age : 1.0f, s = confirmed ? samples : 1.0f;
     const float inverse_count = 1.0f / (alone ? 1.0f : count);
-    const float mean = window.mean[slot] * inverse_count;
-    const float variance = larger(window.square[slot] * inverse_count - mean * mean, 0.0f);
+    const float mean = window.mean[i] * inverse_count;
+    const float variance = larger(window.square[i] * inverse_count - mean * mean, 0.0f);
     const float noise = variance * inverse_count * (1.0f + 1.0f / n);
     const float excess = larger(mean * mean - options.threshold * noise, 0.0f);
     const float history = variance / n + excess;
@@ -80,30 +105,41 @@ void FinishRow(const InnovationInputs& in, const InnovationOptions& options, con
   }
 }
 
+void AddRows(const Sums* const (&rows)[kWindow], int used, int count, Sums& window) {
+  const F d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  for (int i = 0; i < count; i += lanes) {
+    auto n = hn::Load(d, rows[0]->count + i);
+    auto mean = hn::Load(d, rows[0]->mean + i), square = hn::Load(d, rows[0]->square + i);
+    for (int r = 1; r < used; ++r) {
+      n = hn::Add(n, hn::Load(d, rows[r]->count + i));
+      mean = hn::Add(mean, hn::Load(d, rows[r]->mean + i));
+      square = hn::Add(square, hn::Load(d, rows[r]->square + i));
+    }
+    hn::Store(n, d, window.count + i);
+    hn::Store(mean, d, window.mean + i);
+    hn::Store(square, d, window.square + i);
+  }
+}
+
 void InnovationTile(const InnovationInputs& in, const InnovationOptions& options, const Tile& tile,
                     const InnovationOutputs& out) {
   // A ring of row sums: each row of the window is summed once.
-  std::array<Sums, kRows> ring{};
+  Sums ring[kWindow];
   const int height = in.residual.height();
-  const auto width = static_cast<std::size_t>(tile.x1 - tile.x0);
-  const auto slot = [](int y) { return static_cast<std::size_t>((y + kRows) % kRows); };
+  const auto slot = [](int y) { return y % kWindow; };
   for (int y = std::max(tile.y0 - kRadius, 0); y < std::min(tile.y0 + kRadius, height); ++y) {
     SumRow(in, tile, y, ring[slot(y)]);
   }
   for (int y = tile.y0; y < tile.y1; ++y) {
-    if (y + kRadius < height) {
-      SumRow(in, tile, y + kRadius, ring[slot(y + kRadius)]);
-    } else {
-      ring[slot(y + kRadius)] = {};
+    if (y + kRadius < height) SumRow(in, tile, y + kRadius, ring[slot(y + kRadius)]);
+    const Sums* rows[kWindow] = {};
+    int used = 0;
+    for (int j = std::max(y - kRadius, 0); j <= std::min(y + kRadius, height - 1); ++j) {
+      rows[used++] = &ring[slot(j)];
     }
     Sums window;
-    for (const Sums& row : ring) {
-      for (std::size_t i = 0; i < width; ++i) {
-        window.count[i] += row.count[i];
-        window.mean[i] += row.mean[i];
-        window.square[i] += row.square[i];
-      }
-    }
+    AddRows(rows, used, tile.x1 - tile.x0, window);
     FinishRow(in, options, {tile.x0, y, tile.x1, y + 1, tile.index}, window, out);
   }
 }

@@ -19,10 +19,15 @@ constexpr int kBirthInterval = 4;
 // Frames' worth of use below which a basis is forgotten.
 constexpr double kForgotten = 0.05;
 
+int checked(int bases) {
+  EL_CHECK(bases >= 1 && bases <= kMaxBases, "bases {}: expected 1 to {}", bases, kMaxBases);
+  return bases;
+}
+
 }  // namespace
 
 LightMemory::LightMemory(Extent extent, int bases)
-    : bases_(bases),
+    : bases_(checked(bases)),
       tiles_(TileGrid(extent, kCoefficientTile, kCoefficientTile).count()),
       in_use_(static_cast<std::size_t>(bases)),
       information_(static_cast<std::size_t>(tiles_ * bases * bases)),

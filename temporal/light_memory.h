@@ -25,8 +25,10 @@ namespace eigenlight {
 /// k.
 class LightMemory {
  public:
+  /// Throws std::invalid_argument unless `bases` is in [1, kMaxBases].
   LightMemory(Extent extent, int bases);
 
+  [[nodiscard]] int bases() const { return bases_; }
   /// Bases in use: slots [0, active()) may hold energy.
   [[nodiscard]] int active() const;
   /// Expected delta_k^2, entry tile * K + k: M_kk, and 0 for k = 0 and for free slots.

@@ -9,13 +9,18 @@ struct UpdateInputs {
   const CoefficientField& coefficients;
   const CoefficientField& learning;  ///< q of LightMemory
   const Planes<3>& prediction;       ///< correction included
-  const Planes<3>& correction;
-  const Planes<3>& light;       ///< u, resampling included; used where `samples` > 0
+  const Planes<3>* correction;       ///< null: none anywhere in the tile
+  const Planes<3>& light;            ///< u, resampling included; used where `samples` > 0
   const Plane<float>& samples;  ///< this frame's samples over its regular number; 0: none usable
   const Plane<float>& old_age;  ///< of the history; 0 where there is none
   const Plane<float>& new_age;  ///< with this frame
   int active;                   ///< bases in use, [1, K]
   int newborn;                  ///< basis that starts from the correction, or 0
+};
+
+struct UpdateOutputs {
+  BasisField& bases;    ///< room for `active` and the newborn; other slots get 0
+  Planes<3>& estimate;  ///< sum_k c_k V_k of the updated bases: this frame's temporal estimate
 };
 
 /// One step of incremental PCA with per-pixel weights (Chen 2012, Algorithm 1 and section 3.4.2),
@@ -28,7 +33,8 @@ struct UpdateInputs {
 /// pixel has n = 0 and starts at the V of least energy that explains u. Pixels without usable
 /// samples keep what they have; those without history either stay 0.
 ///
-/// Writes sum_k c_k V_k of the updated bases, this frame's temporal estimate, to `estimate`.
-void update_tile(const UpdateInputs& in, const Tile& tile, BasisField& bases, Planes<3>& estimate);
+/// `from` and out.bases may be the same field.
+void update_tile(const UpdateInputs& in, const Tile& tile, const BasisField& from,
+                 const UpdateOutputs& out);
 
 }  // namespace eigenlight

@@ -17,7 +17,7 @@ using Line = float[kSegment];
 
 // Plain loops over the pixels of a row: compiled once for each instruction set, they vectorize.
 struct Row {
-  BasisRows bases;
+  BasisRows from, to;
   alignas(64) Line coefficient[kMaxBases];  // c; c_0 is the gain
   alignas(64) Line learning[kMaxBases];     // q
   alignas(64) Line leverage;                // 1 / h
@@ -48,49 +48,63 @@ void LoadRow(const UpdateInputs& in, const Tile& segment, Row& row) {
     row.leverage[i] = 1.0f / leverage;
     row.weight[i] = usable ? samples[i] / (history + leverage * samples[i]) : 0.0f;
     row.keep[i] = known ? 1.0f : 0.0f;
-    row.bases.age[i] = usable || known ? new_age[i] : 0.0f;
+    row.to.age[i] = usable || known ? new_age[i] : 0.0f;
+  }
+}
+
+// What q is multiplied with.
+void FindStep(const UpdateInputs& in, const Tile& segment, std::size_t channel, Row& row) {
+  const int count = segment.x1 - segment.x0;
+  const float* light = in.light[channel].at(segment.x0, segment.y0);
+  const float* prediction = in.prediction[channel].at(segment.x0, segment.y0);
+  for (int i = 0; i < count; ++i) {
+    const float r = light[i] - prediction[i];
+    row.step[i] = row.weight[i] > 0.0f ? row.weight[i] * r : 0.0f;
+  }
+  if (in.correction == nullptr || in.newborn > 0) return;
+  const float* correction = (*in.correction)[channel].at(segment.x0, segment.y0);
+  for (int i = 0; i < count; ++i) {
+    row.step[i] = row.keep[i] * correction[i] * row.leverage[i] + row.step[i];
   }
 }
 
 void UpdateChannel(const UpdateInputs& in, const Tile& segment, std::size_t channel, int bases,
-                   Row& row, float* estimate) {
-  const int count = segment.x1 - segment.x0;
-  const float* light = in.light[channel].at(segment.x0, segment.y0);
-  const float* prediction = in.prediction[channel].at(segment.x0, segment.y0);
-  const float* correction = in.correction[channel].at(segment.x0, segment.y0);
-  float(*values)[kSegment] = row.bases.values + static_cast<int>(channel) * bases;
-  const float shared = in.newborn == 0 ? 1.0f : 0.0f;
+                   Row& row, const UpdateOutputs& out) {
+  const int count = segment.x1 - segment.x0, room = out.bases.bases();
+  float* estimate = out.estimate[channel].at(segment.x0, segment.y0);
+  const float(*from)[kSegment] = row.from.values + static_cast<int>(channel) * bases;
+  float(*to)[kSegment] = row.to.values + static_cast<int>(channel) * room;
+  FindStep(in, segment, channel, row);
   for (int i = 0; i < count; ++i) {
-    const float r = light[i] - prediction[i];
-    const float fresh = row.weight[i] > 0.0f ? row.weight[i] * r : 0.0f;
-    row.step[i] = shared * row.keep[i] * correction[i] * row.leverage[i] + fresh;
-    values[0][i] =
-        row.coefficient[0][i] * values[0][i] * row.keep[i] + row.learning[0][i] * row.step[i];
-    estimate[i] = values[0][i];
+    to[0][i] = row.coefficient[0][i] * from[0][i] * row.keep[i] + row.learning[0][i] * row.step[i];
+    estimate[i] = to[0][i];
   }
   for (int k = 1; k < in.active; ++k) {
     for (int i = 0; i < count; ++i) {
-      values[k][i] = row.keep[i] * values[k][i] + row.learning[k][i] * row.step[i];
-      estimate[i] += row.coefficient[k][i] * values[k][i];
+      to[k][i] = row.keep[i] * from[k][i] + row.learning[k][i] * row.step[i];
+      estimate[i] += row.coefficient[k][i] * to[k][i];
     }
   }
-  if (in.newborn == 0) return;
+  for (int k = in.active; k < room; ++k) {
+    for (int i = 0; i < count; ++i) to[k][i] = 0.0f;
+  }
+  if (in.newborn == 0 || in.correction == nullptr) return;
+  const float* correction = (*in.correction)[channel].at(segment.x0, segment.y0);
   for (int i = 0; i < count; ++i) {
-    values[in.newborn][i] = row.keep[i] * correction[i];
-    estimate[i] += values[in.newborn][i];
+    to[in.newborn][i] = row.keep[i] * correction[i];
+    estimate[i] += to[in.newborn][i];
   }
 }
 
-void UpdateTile(const UpdateInputs& in, const Tile& tile, BasisField& bases, Planes<3>& estimate) {
+void UpdateTile(const UpdateInputs& in, const Tile& tile, const BasisField& from,
+                const UpdateOutputs& out) {
   Row row;
   for (int y = tile.y0; y < tile.y1; ++y) {
     const Tile segment{tile.x0, y, tile.x1, y + 1, tile.index};
-    load_rows(bases, segment, row.bases);
+    load_rows(from, segment, row.from);
     LoadRow(in, segment, row);
-    for (std::size_t c = 0; c < 3; ++c) {
-      UpdateChannel(in, segment, c, bases.bases(), row, estimate[c].at(tile.x0, y));
-    }
-    store_rows(row.bases, segment, bases);
+    for (std::size_t c = 0; c < 3; ++c) UpdateChannel(in, segment, c, from.bases(), row, out);
+    store_rows(row.to, segment, out.bases);
   }
 }
 
@@ -103,9 +117,12 @@ namespace eigenlight {
 
 HWY_EXPORT(UpdateTile);
 
-void update_tile(const UpdateInputs& in, const Tile& tile, BasisField& bases, Planes<3>& estimate) {
+void update_tile(const UpdateInputs& in, const Tile& tile, const BasisField& from,
+                 const UpdateOutputs& out) {
   EL_DCHECK(tile.x1 - tile.x0 <= kSegment);
-  HWY_DYNAMIC_DISPATCH(UpdateTile)(in, tile, bases, estimate);
+  EL_DCHECK(in.active <= from.bases() && in.active <= out.bases.bases() &&
+            in.newborn < out.bases.bases());
+  HWY_DYNAMIC_DISPATCH(UpdateTile)(in, tile, from, out);
 }
 
 }  // namespace eigenlight

@@ -110,9 +110,9 @@ struct Stages {
   }
   void update() {
     for_each_tile(tiles, [&](const Tile& tile) {
-      update_tile({coefficients, learning, prediction, correction, light, samples, age, new_age,
+      update_tile({coefficients, learning, prediction, &correction, light, samples, age, new_age,
                    history.bases(), 0},
-                  tile, warped, estimate);
+                  tile, warped, {warped, estimate});
     });
   }
 

@@ -162,7 +162,6 @@ TEST(CorrectionOptions, RefusesWhatIsOutOfRange) {
   refused({.significance = std::nanf("")});
   refused({.passes = 0});
   refused({.passes = 7});
-  refused({.radius = 3});
 }
 
 }  // namespace

@@ -57,12 +57,12 @@ struct Scene {
   }
 
   [[nodiscard]] UpdateInputs in() const {
-    return {coefficients, learning, prediction, correction, light,
-            samples,      old_age,  new_age,    active,     newborn};
+    return {coefficients, learning, prediction, &correction, light,
+            samples,      old_age,  new_age,    active,      newborn};
   }
   void run() {
     for (int i = 0; i < coefficients.grid().count(); ++i) {
-      update_tile(in(), coefficients.grid().tile(i), field, estimate);
+      update_tile(in(), coefficients.grid().tile(i), field, {field, estimate});
     }
   }
 

@@ -1,0 +1,53 @@
+// This frame's samples, regular and granted ones, as one mean per pixel; and how much they scatter.
+#pragma once
+
+#include <cstdint>
+
+#include "frame/frame.h"
+#include "frame/tiles.h"
+
+namespace eigenlight {
+
+struct SignalInputs {
+  const Frame& frame;
+  const Plane<std::uint8_t>* extra;  ///< samples granted beyond frame.spp, or null: none
+  const Planes<3>* extra_mean;       ///< of those, where there are any; null with `extra`
+  const Plane<float>& age;           ///< of the history
+};
+
+struct SignalOutputs {
+  Planes<3>& light;       ///< mean of all samples; NaN where it is not usable
+  Plane<float>& samples;  ///< all samples over frame.spp; 0 where the light is not usable
+};
+
+struct SignalCounts {
+  std::int64_t fresh = 0;       ///< surface pixels without history
+  std::int64_t non_finite = 0;  ///< surface pixels with NaN, Inf, or light beyond kLargestLight
+};
+
+/// Fills the pixels of a tile at most kSegment wide. Light is usable on surfaces where the sum of
+/// its channels' magnitudes is at most kLargestLight.
+SignalCounts merge_samples(const SignalInputs& in, const Tile& tile, const SignalOutputs& out);
+
+/// One frame's variance at new pixels (age 0): that of luminance over the usable pixels of the 7 x
+/// 7 around, whose structure counts as noise until history tells them apart; 0 where there is but
+/// one. `samples` as merge_samples leaves it, for the whole image.
+void fresh_variance(const Frame& frame, const Plane<float>& samples, const Plane<float>& age,
+                    const Tile& tile, Plane<float>& variance);
+
+struct EstimateInputs {
+  const Plane<std::uint32_t>& id;
+  const Plane<float>& age;       ///< with this frame
+  const Plane<float>& variance;  ///< of one frame's luminance
+  float young;                   ///< frames below which a pixel counts as young
+};
+
+struct EstimateOutputs {
+  Plane<float>& variance;      ///< of the temporal estimate: variance / age, 0 without age
+  Plane<std::uint8_t>& young;  ///< 1 on young surfaces, else 0
+};
+
+/// What the spatial filters are told of the pixels of `tile`.
+void estimate_variance(const EstimateInputs& in, const Tile& tile, const EstimateOutputs& out);
+
+}  // namespace eigenlight

@@ -1,0 +1,206 @@
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "reproject/taps.h"
+#include "temporal/signal.h"
+#include "temporal/tile_sums.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "temporal/signal_simd.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace eigenlight::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using F = hn::ScalableTag<float>;
+using VF = hn::Vec<F>;
+
+SignalCounts MergeSamples(const SignalInputs& in, const Tile& tile, const SignalOutputs& out) {
+  const F d;
+  const hn::RebindToUnsigned<F> du;
+  const hn::Rebind<std::uint8_t, F> bytes;
+  const hn::RebindToSigned<F> di;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  const VF regular = hn::Set(d, static_cast<float>(std::max(in.frame.spp, 1)));
+  const VF zero = hn::Zero(d), per_regular = hn::Div(hn::Set(d, 1.0f), regular);
+  const VF nan = hn::Set(d, std::numeric_limits<float>::quiet_NaN());
+  SignalCounts counts;
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    for (int x = tile.x0; x < tile.x1; x += lanes) {
+      VF extra = zero;
+      if (in.extra != nullptr) {
+        extra = hn::ConvertTo(d, hn::PromoteTo(di, hn::LoadU(bytes, in.extra->row(y) + x)));
+      }
+      const auto granted = hn::Gt(extra, zero);
+      const VF samples = hn::Add(regular, extra);
+      const VF scale = hn::Div(hn::Set(d, 1.0f), samples);
+      VF light[3], size = zero;
+      for (std::size_t c = 0; c < 3; ++c) {
+        light[c] = hn::Mul(regular, hn::LoadU(d, in.frame.indirect[c].row(y) + x));
+        if (in.extra_mean != nullptr) {
+          const VF more = hn::Mul(extra, hn::LoadU(d, (*in.extra_mean)[c].row(y) + x));
+          light[c] = hn::Add(light[c], hn::IfThenElseZero(granted, more));
+        }
+        light[c] = hn::Mul(light[c], scale);
+        size = hn::Add(size, hn::Abs(light[c]));
+      }
+      const auto id = hn::LoadU(du, in.frame.surface.id.row(y) + x);
+      const auto inside = hn::FirstN(d, static_cast<std::size_t>(tile.x1 - x));
+      const auto surface = hn::And(inside, hn::RebindMask(d, hn::Ne(id, hn::Zero(du))));
+      // False of NaN.
+      const auto usable = hn::And(surface, hn::Le(size, hn::Set(d, kLargestLight)));
+      const auto fresh = hn::And(surface, hn::Eq(hn::LoadU(d, in.age.row(y) + x), zero));
+      for (std::size_t c = 0; c < 3; ++c) {
+        hn::StoreU(hn::IfThenElse(usable, light[c], nan), d, out.light[c].row(y) + x);
+      }
+      hn::StoreU(hn::IfThenElseZero(usable, hn::Mul(samples, per_regular)), d,
+                 out.samples.row(y) + x);
+      counts.fresh += static_cast<std::int64_t>(hn::CountTrue(d, fresh));
+      counts.non_finite += static_cast<std::int64_t>(hn::CountTrue(d, hn::AndNot(usable, surface)));
+    }
+  }
+  return counts;
+}
+
+void EstimateVariance(const EstimateInputs& in, const Tile& tile, const EstimateOutputs& out) {
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    const std::uint32_t* id = in.id.at(tile.x0, y);
+    const float* age = in.age.at(tile.x0, y);
+    const float* variance = in.variance.at(tile.x0, y);
+    float* estimate = out.variance.at(tile.x0, y);
+    std::uint8_t* young = out.young.at(tile.x0, y);
+    for (int i = 0; i < tile.x1 - tile.x0; ++i) {
+      const float n = age[i] > 0.0f ? age[i] : 1.0f;
+      estimate[i] = age[i] > 0.0f ? variance[i] / n : 0.0f;
+    }
+    for (int i = 0; i < tile.x1 - tile.x0; ++i) {
+      young[i] = static_cast<std::uint8_t>((id[i] != 0) & (age[i] < in.young));
+    }
+  }
+}
+
+constexpr int kRadius = 3;
+constexpr int kWindow = 2 * kRadius + 1;
+
+// Sums of count, l and l^2: over a row of the window, then over the window.
+struct Sums {
+  alignas(64) std::array<double, kSegment> count{}, value{}, square{};
+};
+
+// Window sums of row y along x for the pixels of the tile.
+void SumRow(const Frame& frame, const Plane<float>& samples, const Tile& tile, int y, Sums& sums) {
+  alignas(64) double count[kSegment + 2 * kRadius] = {}, value[kSegment + 2 * kRadius] = {};
+  const int first = std::max(tile.x0 - kRadius, 0);
+  const int last = std::min(tile.x1 + kRadius, samples.width());
+  const int shift = first - (tile.x0 - kRadius);
+  const float* used = samples.at(first, y);
+  const float* u[3] = {frame.indirect[0].at(first, y), frame.indirect[1].at(first, y),
+                       frame.indirect[2].at(first, y)};
+  for (int i = 0; i < last - first; ++i) {
+    const bool usable = used[i] > 0.0f;
+    const double l = 0.2126 * static_cast<double>(u[0][i]) + 0.7152 * static_cast<double>(u[1][i]) +
+                     0.0722 * static_cast<double>(u[2][i]);
+    count[shift + i] = usable ? 1.0 : 0.0;
+    value[shift + i] = usable ? l : 0.0;
+  }
+  sums = {};
+  for (int j = 0; j < kWindow; ++j) {
+    for (int i = 0; i < tile.x1 - tile.x0; ++i) {
+      const auto slot = static_cast<std::size_t>(i);
+      sums.count[slot] += count[i + j];
+      sums.value[slot] += value[i + j];
+      sums.square[slot] += value[i + j] * value[i + j];
+    }
+  }
+}
+
+// The first and last rows of the tile with new pixels; {0, -1} without any.
+std::array<int, 2> FreshRows(const Frame& frame, const Plane<float>& age, const Tile& tile) {
+  std::array<int, 2> rows{0, -1};
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    const float* n = age.at(tile.x0, y);
+    const std::uint32_t* id = frame.surface.id.at(tile.x0, y);
+    int fresh = 0;
+    for (int i = 0; i < tile.x1 - tile.x0; ++i) {
+      fresh += static_cast<int>((id[i] != 0) & (n[i] == 0.0f));
+    }
+    if (fresh == 0) continue;
+    if (rows[1] < 0) rows[0] = y;
+    rows[1] = y;
+  }
+  return rows;
+}
+
+void FreshVariance(const Frame& frame, const Plane<float>& samples, const Plane<float>& age,
+                   const Tile& tile, Plane<float>& variance) {
+  const auto [top, bottom] = FreshRows(frame, age, tile);
+  if (bottom < 0) return;
+  // A ring of row sums: each row of the window is summed once.
+  std::array<Sums, kWindow> ring{};
+  const int height = samples.height();
+  const auto slot = [](int y) { return static_cast<std::size_t>((y + kWindow) % kWindow); };
+  const auto fill = [&](int y) {
+    if (y < 0 || y >= height) {
+      ring[slot(y)] = {};
+    } else {
+      SumRow(frame, samples, tile, y, ring[slot(y)]);
+    }
+  };
+  for (int y = top - kRadius; y < top + kRadius; ++y) fill(y);
+  for (int y = top; y <= bottom; ++y) {
+    fill(y + kRadius);
+    Sums window;
+    for (const Sums& row : ring) {
+      for (std::size_t i = 0; i < kSegment; ++i) {
+        window.count[i] += row.count[i];
+        window.value[i] += row.value[i];
+        window.square[i] += row.square[i];
+      }
+    }
+    const float* n = age.at(tile.x0, y);
+    const std::uint32_t* id = frame.surface.id.at(tile.x0, y);
+    float* out = variance.at(tile.x0, y);
+    for (int i = 0; i < tile.x1 - tile.x0; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      const double count = window.count[at] > 1.0 ? window.count[at] : 1.0;
+      const double mean = window.value[at] / count;
+      const double scatter = window.square[at] / count - mean * mean;
+      const bool fresh = (id[i] != 0) & (n[i] == 0.0f);
+      const bool spread = (window.count[at] > 1.0) & (scatter > 0.0);
+      out[i] = fresh ? (spread ? static_cast<float>(scatter) : 0.0f) : out[i];
+    }
+  }
+}
+
+}  // namespace
+}  // namespace eigenlight::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace eigenlight {
+
+HWY_EXPORT(MergeSamples);
+HWY_EXPORT(EstimateVariance);
+HWY_EXPORT(FreshVariance);
+
+SignalCounts merge_samples(const SignalInputs& in, const Tile& tile, const SignalOutputs& out) {
+  EL_DCHECK(tile.x1 - tile.x0 <= kSegment);
+  return HWY_DYNAMIC_DISPATCH(MergeSamples)(in, tile, out);
+}
+
+void estimate_variance(const EstimateInputs& in, const Tile& tile, const EstimateOutputs& out) {
+  HWY_DYNAMIC_DISPATCH(EstimateVariance)(in, tile, out);
+}
+
+void fresh_variance(const Frame& frame, const Plane<float>& samples, const Plane<float>& age,
+                    const Tile& tile, Plane<float>& variance) {
+  EL_DCHECK(tile.x1 - tile.x0 <= kSegment);
+  HWY_DYNAMIC_DISPATCH(FreshVariance)(frame, samples, age, tile, variance);
+}
+
+}  // namespace eigenlight
+#endif
