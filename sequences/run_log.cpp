@@ -125,7 +125,8 @@ void RunLog::append(const FrameReport& report, int spp, const FrameOutput& outpu
                    {{"warp", report.skipped_warp},
                     {"surface", report.skipped_surface},
                     {"filter", report.skipped_filter},
-                    {"guided", report.skipped_guided}}},
+                    {"guided", report.skipped_guided},
+                    {"correction", report.skipped_correction}}},
                   {"non_finite_pixels", report.non_finite_pixels},
                   {"non_finite_samples", report.non_finite_samples}};
   errno = 0;

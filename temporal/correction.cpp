@@ -94,7 +94,8 @@ bool Correction::open_gates() {
       significant += blocks_[tile].significant;
     });
     const double share = all > 0.0 ? significant / all : 0.0;
-    const double gate = std::clamp((share - kGateStart) / kGateRange, 0.0, 1.0);
+    const double gate =
+        options_.gated ? std::clamp((share - kGateStart) / kGateRange, 0.0, 1.0) : 1.0;
     gate_.tile(index)[0] = static_cast<float>(gate - 1.0);
     if (gate > 0.0) for_each_neighbor(grid, index, [&](std::size_t tile) { open_[tile] = 1; });
   }

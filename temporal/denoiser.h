@@ -37,10 +37,11 @@ struct FrameReport {
   std::int64_t non_finite_samples = 0;  ///< excluded by the source itself
   double mean_rank = 0.0;               ///< bases in use per tile with surface
   /// What was skipped, in pixels.
-  std::int64_t skipped_warp = 0;     ///< still: no taps, no copy
-  std::int64_t skipped_surface = 0;  ///< pixels in tiles without any surface
-  std::int64_t skipped_filter = 0;   ///< pixels already quiet enough for the spatial passes
-  std::int64_t skipped_guided = 0;   ///< pixels in tiles without young pixels
+  std::int64_t skipped_warp = 0;        ///< still: no taps, no copy
+  std::int64_t skipped_surface = 0;     ///< pixels in tiles without any surface
+  std::int64_t skipped_filter = 0;      ///< pixels already quiet enough for the spatial passes
+  std::int64_t skipped_guided = 0;      ///< pixels in tiles without young pixels
+  std::int64_t skipped_correction = 0;  ///< pixels around which no light changed unforeseen
 
   [[nodiscard]] StageTime& operator[](Stage stage) { return time[static_cast<std::size_t>(stage)]; }
   [[nodiscard]] const StageTime& operator[](Stage stage) const {

@@ -103,11 +103,11 @@ void EigenDenoiser::start_frame(const StageTime& time) {
 }
 
 bool EigenDenoiser::is_empty(const Tile& tile) const {
-  return counts_[static_cast<std::size_t>(tile.index)].surface == 0;
+  return options_.skip_empty && counts_[static_cast<std::size_t>(tile.index)].surface == 0;
 }
 
 void EigenDenoiser::warp_history() {
-  const bool still = !report_.cut && frame_.is_static;
+  const bool still = options_.skip_still && !report_.cut && frame_.is_static;
   std::fill(sums_.begin(), sums_.end(), TileSums{});
   if (report_.cut) {
     memory_.reset();
@@ -171,21 +171,26 @@ void EigenDenoiser::resample(FrameSource& source, std::int64_t planned) {
 }
 
 void EigenDenoiser::project() {
-  solve_coefficients(sums_, memory_.expected(), options_.shrink, coefficients_);
+  if (options_.project) {
+    solve_coefficients(sums_, memory_.expected(), options_.shrink, coefficients_);
+  }
   coefficients_.set_used(memory_.active());
   for_each_tile(tiles_, [&](const Tile& tile) {
     predict_tile(warped_bases_, coefficients_, light_, tile,
                  {prediction_, residual_, confirmed_, old_age_});
   });
-  const double corrected = correction_.process(
-      {frame_, light_, confirmed_, old_age_, samples_, variance_}, prediction_, residual_);
+  const CorrectionInputs inputs{frame_, light_, confirmed_, old_age_, samples_, variance_};
+  const double corrected =
+      options_.correct ? correction_.process(inputs, prediction_, residual_) : 0.0;
+  report_.skipped_correction =
+      options_.correct ? correction_.skipped() : static_cast<std::int64_t>(extent_.pixels());
   memory_.advance(coefficients_, learning_);
   newborn_ = corrected > options_.birth ? memory_.free_slot() : 0;
 
   double rank = 0.0, tiles = 0.0;
   for (int i = 0; i < tiles_.count(); ++i) {
     if (counts_[static_cast<std::size_t>(i)].surface == 0) {
-      report_.skipped_surface += tiles_.tile(i).pixels();
+      if (options_.skip_empty) report_.skipped_surface += tiles_.tile(i).pixels();
       continue;
     }
     const auto delta = coefficients_.tile(i).subspan(1);
@@ -245,7 +250,9 @@ void EigenDenoiser::retire_bases() {
 
 void EigenDenoiser::filter() {
   fill_young();
-  report_.skipped_filter = atrous_.process(frame_, options_.quiet, output_, output_variance_);
+  report_.skipped_filter = options_.filter
+                               ? atrous_.process(frame_, options_.quiet, output_, output_variance_)
+                               : report_.surface_pixels;
 }
 
 // Young pixels lean on what their surroundings say of such a surface (Bauszat 2011). The share that

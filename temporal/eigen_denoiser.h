@@ -30,6 +30,11 @@ struct EigenOptions {
   float quiet = 1e-5f;
   /// [0, 1] of the pixels that must need correction before another basis is born.
   double birth = 0.1;
+  bool project = true;     ///< solve for coefficients; else the light is taken to be steady
+  bool correct = true;     ///< add the smoothed innovation
+  bool filter = true;      ///< a-trous passes over the output
+  bool skip_still = true;  ///< no taps for frames in which nothing moves
+  bool skip_empty = true;  ///< no work in tiles without surface
 
   void validate() const;  ///< throws std::invalid_argument naming the field
 };

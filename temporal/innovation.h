@@ -11,6 +11,7 @@ struct InnovationOptions {
   float threshold = 2.0f;
   /// [1, 255] frames: ages saturate here. The prototype used 64.
   float max_age = 64.0f;
+  bool test = true;  ///< false: ages grow whatever the residual says, b = 0
 
   void validate() const;  ///< throws std::invalid_argument naming the field
 };

@@ -76,6 +76,7 @@ void FinishRow(const InnovationInputs& in, const InnovationOptions& options, con
   const float* all_confirmed = in.confirmed.at(row.x0, row.y0);
   float* new_age = out.age.at(row.x0, row.y0);
   float* variances = out.variance.at(row.x0, row.y0);
+  const float tested_share = options.test ? 1.0f : 0.0f;
   const auto larger = [](float a, float b) { return a > b ? a : b; };
   const auto smaller = [](float a, float b) { return a < b ? a : b; };
   for (int i = 0; i < row.x1 - row.x0; ++i) {
@@ -87,7 +88,7 @@ void FinishRow(const InnovationInputs& in, const InnovationOptions& options, con
     const float mean = window.mean[i] * inverse_count;
     const float variance = larger(window.square[i] * inverse_count - mean * mean, 0.0f);
     const float noise = variance * inverse_count * (1.0f + 1.0f / n);
-    const float excess = larger(mean * mean - options.threshold * noise, 0.0f);
+    const float excess = tested_share * larger(mean * mean - options.threshold * noise, 0.0f);
     const float history = variance / n + excess;
     const float total = history + variance / s;
     const float weight = total > 0.0f ? history / (total > 0.0f ? total : 1.0f) : s / (n + s);

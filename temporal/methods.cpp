@@ -13,7 +13,7 @@
 #include "temporal/baselines/running_mean.h"
 #include "temporal/baselines/svgf.h"
 #include "temporal/denoiser.h"
-#include "temporal/eigen_denoiser.h"
+#include "temporal/eigen_parts.h"
 #include "temporal/frame_by_frame.h"
 
 namespace eigenlight {
@@ -57,7 +57,7 @@ const std::vector<Method>& methods() {
   static const std::vector<Method> kMethods{
       {"eigenlight",
        "tiled incremental PCA, leave-one-out coefficients, innovation test, resampling",
-       "after Chen 2012", make<EigenDenoiser>},
+       "after Chen 2012", make_eigen_denoiser, eigen_parts()},
       {"chen2012", "incremental PCA of whole images, basis filtering, 120 samples at new pixels",
        "Chen, Lei and Chang 2012", make<Chen2012>},
       {"svgf", "temporal accumulation, five a-trous passes steered by variance, the first fed back",

@@ -72,5 +72,19 @@ TEST(Methods, AreFoundByNameAndListedOnceEach) {
   EXPECT_THROW((void)make_denoiser("noisy", {{8, 0}, 3}), std::invalid_argument);
 }
 
+TEST(Methods, RunWithoutEachOfTheirPartsAndRefuseOthers) {
+  for (const Method& method : methods()) {
+    for (const Part& part : method.parts) {
+      AnalyticSource source({});
+      const auto denoiser = make_denoiser(method.name, {{64, 36}, 3, {std::string(part.name)}});
+      while (denoiser->step(source) != nullptr) {
+        ASSERT_TRUE(std::isfinite(denoiser->report().mean_rank)) << part.name;
+      }
+      EXPECT_FALSE(part.what.empty());
+    }
+    EXPECT_THROW((void)make_denoiser(method.name, {{8, 8}, 2, {"nothing"}}), std::invalid_argument);
+  }
+}
+
 }  // namespace
 }  // namespace eigenlight
