@@ -3,8 +3,8 @@
 //
 // time/<filter>: frames of an analytic room, every pixel filtered. Radius of the pyramid as given;
 // the a-trous filter has three passes of 5 x 5 taps, the guided filter its default radius of 8.
-// quality/...: one frame of a built-in scene at 1 sample a pixel, filtered by the pyramid with
-// trained and with untrained weights and by brute force; PSNR and SSIM of display values
+// quality/...: one frame of a built-in scene at 1 or 16 samples a pixel, filtered by the pyramid
+// with trained and with untrained weights and by brute force; PSNR and SSIM of display values
 // (metrics.h), peak 1.
 #include <benchmark/benchmark.h>
 
@@ -20,6 +20,7 @@
 #include "spatial/pyramid_filter.h"
 #include "spatial/training/bilateral.h"
 #include "tests/bench/floors.h"
+#include "tests/bench/register.h"
 #include "tests/bench/room_source.h"
 #include "tests/bench/setting.h"
 
@@ -88,13 +89,13 @@ void time_atrous(benchmark::State& state) {
 
 /// A noisy frame, and attributes for the edge-stopping function.
 struct NoisyFrame {
-  explicit NoisyFrame(std::string_view name)
-      : scene(make_builtin_scene(name)), attributes(kExtent, 4), weight(kExtent) {
-    const auto animation = make_flythrough(scene, Perturbation::kNone, kExtent);
-    LiveSource source(scene, *animation, {.extent = kExtent, .spp = 1, .direct_spp = 1}, {40});
+  NoisyFrame(std::string_view name, Extent extent, int spp)
+      : scene(make_builtin_scene(name)), attributes(extent, 4), weight(extent) {
+    const auto animation = make_flythrough(scene, Perturbation::kNone, extent);
+    LiveSource source(scene, *animation, {.extent = extent, .spp = spp, .direct_spp = 1}, {40});
     if (!source.next(frame)) throw std::logic_error("a source of one frame has none");
-    for (int y = 0; y < kExtent.height; ++y) {
-      for (int x = 0; x < kExtent.width; ++x) {
+    for (int y = 0; y < extent.height; ++y) {
+      for (int x = 0; x < extent.width; ++x) {
         if (frame.surface.id(x, y) == 0) continue;
         weight(x, y) = 1.0f;
         for (std::size_t c = 0; c < 3; ++c) {
@@ -104,24 +105,20 @@ struct NoisyFrame {
       }
     }
   }
-  static constexpr Extent kExtent{640, 360};
   Scene scene;
   Frame frame;
   Plane<float> attributes, weight;
 };
 
 Figures compare(const NoisyFrame& noisy, const Planes<3>& found, const Planes<3>& wanted) {
+  const Extent extent = noisy.frame.extent();
   SequenceMetrics metrics({});
-  MetricFrame frame{0,
-                    false,
-                    make_planes<3>(NoisyFrame::kExtent),
-                    make_planes<3>(NoisyFrame::kExtent),
-                    {},
-                    Plane<std::uint8_t>(NoisyFrame::kExtent)};
+  MetricFrame frame{
+      0, false, make_planes<3>(extent), make_planes<3>(extent), {}, Plane<std::uint8_t>(extent)};
   copy_planes(found, frame.test);
   copy_planes(wanted, frame.reference);
-  for (int y = 0; y < NoisyFrame::kExtent.height; ++y) {
-    for (int x = 0; x < NoisyFrame::kExtent.width; ++x) {
+  for (int y = 0; y < extent.height; ++y) {
+    for (int x = 0; x < extent.width; ++x) {
       const bool surface = noisy.weight(x, y) > 0.0f;
       frame.bits(x, y) = static_cast<std::uint8_t>(surface ? kFiniteBit | kSurfaceBit : kFiniteBit);
     }
@@ -131,14 +128,15 @@ Figures compare(const NoisyFrame& noisy, const Planes<3>& found, const Planes<3>
 
 void quality(benchmark::State& state) {
   const BuiltinScene& scene = builtin_scenes()[static_cast<std::size_t>(state.range(0))];
-  const NoisyFrame noisy(scene.name);
+  const int height = static_cast<int>(state.range(3));
+  const Extent extent{height * 16 / 9, height};
+  const NoisyFrame noisy(scene.name, extent, static_cast<int>(state.range(2)));
   // As in training.
   const GlobalIlluminationEdge edge{64.0f, 16.0f, static_cast<float>(state.range(1))};
-  Planes<3> wanted = make_planes<3>(NoisyFrame::kExtent),
-            found = make_planes<3>(NoisyFrame::kExtent);
+  Planes<3> wanted = make_planes<3>(extent), found = make_planes<3>(extent);
   bilateral_filter(edge, {noisy.attributes, noisy.frame.indirect, noisy.weight}, wanted);
   const auto report = [&](const PyramidTable& table, const std::string& name) {
-    PyramidFilter filter(NoisyFrame::kExtent, edge, table);
+    PyramidFilter filter(extent, edge, table);
     filter.process({noisy.frame, noisy.frame.indirect, noisy.weight}, found);
     const Figures figures = compare(noisy, found, wanted);
     state.counters[name + "_psnr"] = figures[Metric::kPsnr].value_or(0.0);
@@ -154,7 +152,7 @@ void quality(benchmark::State& state) {
 void as_times(benchmark::internal::Benchmark* bench, const std::string& name,
               const std::vector<std::int64_t>& values) {
   bench->ArgNames({"height", name})
-      ->ArgsProduct({{360, 720}, values})
+      ->ArgsProduct({bench_heights({360, 720}), values})
       ->UseManualTime()
       ->Unit(benchmark::kMillisecond);
 }
@@ -165,8 +163,8 @@ BENCHMARK(time_pyramid)->Apply([](auto* bench) {
 BENCHMARK(time_guided)->Apply([](auto* bench) { as_times(bench, "radius", {8}); });
 BENCHMARK(time_atrous)->Apply([](auto* bench) { as_times(bench, "passes", {3, 5}); });
 BENCHMARK(quality)
-    ->ArgNames({"scene", "radius"})
-    ->ArgsProduct({{0, 1, 2}, {8, 16}})
+    ->ArgNames({"scene", "radius", "spp", "height"})
+    ->ArgsProduct({{0, 1, 2}, {8, 16}, {1, 16}, bench_heights({360})})
     ->Iterations(1)
     ->Unit(benchmark::kMillisecond);
 

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Runs each benchmark once on tiny frames: that they work, not how fast. smoke_test.py PROGRAM..."""
 
+import math
 import os
 import pathlib
 import subprocess
@@ -16,7 +17,9 @@ from results import load_json, load_results  # noqa: E402
 def run(program, folder):
     """The results of all its benchmarks. No scene from outside the project is used."""
     path = folder / (pathlib.Path(program).name + ".json")
-    environment = dict(os.environ, EIGENLIGHT_BENCH_HEIGHTS="36", EIGENLIGHT_SHARED=str(folder))
+    # bench_opencv compares inside of a border of twice its largest radius, 32, on each side.
+    heights = "192" if "opencv" in path.name else "36"
+    environment = dict(os.environ, EIGENLIGHT_BENCH_HEIGHTS=heights, EIGENLIGHT_SHARED=str(folder))
     command = [program, "--benchmark_min_time=0.001", f"--benchmark_out={path}",
                "--benchmark_out_format=json"]
     if "render" in path.name:
@@ -28,6 +31,20 @@ def run(program, folder):
 def check_render(path):
     entries = load_json(path)["benchmarks"]
     assert entries and all(entry["rays"] > 0 for entry in entries), path
+
+
+def check_timed(path):
+    """Filters and rivals: each beside its copy; the pyramid's quality by its figures."""
+    entries = load_json(path)["benchmarks"]
+    assert entries, path
+    for entry in entries:
+        assert not entry.get("error_occurred"), f"{entry['name']}: {entry['error_message']}"
+        quality = entry["name"].startswith("quality/")
+        counters = (("trained_psnr", "trained_ssim", "untrained_psnr", "untrained_ssim") if quality
+                    else ("bytes", "copy_ms", "cpu_ms", "ratio", "pixels_per_second"))
+        for counter in counters:
+            value = entry[counter]
+            assert value > 0 and math.isfinite(value), f"{entry['name']}: {counter} is {value}"
 
 
 def check_stages(path):
@@ -47,11 +64,15 @@ def check_stages(path):
     assert not missing, f"not in the table: {missing}"
 
 
+CHECKS = {"bench_render": check_render}
+CHECKS.update({f"bench_{name}": check_timed for name in ("filters", "opencv", "pyramid", "rivals")})
+
+
 def main():
     with tempfile.TemporaryDirectory() as name:
         for program in sys.argv[1:]:
             path = run(program, pathlib.Path(name))
-            (check_render if "render" in path.name else check_stages)(path)
+            CHECKS.get(path.stem, check_stages)(path)
     print(f"{len(sys.argv) - 1} programs run")
 
 
