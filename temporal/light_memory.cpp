@@ -68,10 +68,10 @@ void LightMemory::advance(const CoefficientField& coefficients, CoefficientField
     r = kLambda * r + c * c.transpose();
 
     // Solve over the slots in use. A ridge of 1e-3 of a frame's worth bounds what an idle basis
-    // learns.
+    // learns. The first is never idle: R_00 >= 1, and a ridge there would take 0.1 % of new light.
     SmallMatrix m = normalized(tile).topLeftCorner(rank, rank);
     for (int k = 0; k < rank; ++k) {
-      m(k, k) += in_use_[static_cast<std::size_t>(k)] ? 1e-3 / r(0, 0) : 1.0;
+      if (k > 0) m(k, k) += in_use_[static_cast<std::size_t>(k)] ? 1e-3 / r(0, 0) : 1.0;
       expected_[static_cast<std::size_t>(tile * bases_ + k)] =
           k > 0 && in_use_[static_cast<std::size_t>(k)] ? r(k, k) / r(0, 0) : 0.0;
     }
