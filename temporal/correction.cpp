@@ -93,7 +93,8 @@ bool Correction::open_gates() {
       all += blocks_[tile].all;
       significant += blocks_[tile].significant;
     });
-    const double share = all > 0.0 ? significant / all : 0.0;
+    // One block alone is no region: in a small image chance would open the gate with it.
+    const double share = all > 0.0 ? (significant - 1.0) / all : 0.0;
     const double gate =
         options_.gated ? std::clamp((share - kGateStart) / kGateRange, 0.0, 1.0) : 1.0;
     gate_.tile(index)[0] = static_cast<float>(gate - 1.0);
