@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <numeric>
 #include <thread>
 
 #ifdef EIGENLIGHT_USE_TBB
@@ -23,6 +24,14 @@ int available_threads() {
 }
 
 int chosen_threads = 0;  // 0: one per core
+std::uint32_t loop_order = 0;
+
+// i-th index of the chosen order: a walk through the loop in strides that meet every index once.
+int reordered(int i, int count) {
+  std::int64_t stride = 1 + loop_order * std::int64_t{2654435761} % count;
+  while (std::gcd(stride, std::int64_t{count}) != 1) ++stride;
+  return static_cast<int>((i * stride + loop_order) % count);
+}
 
 #ifdef EIGENLIGHT_USE_TBB
 // One arena for the process; made anew only when the number of threads changes.
@@ -62,9 +71,13 @@ void set_thread_count(int threads) {
 
 int thread_count() { return chosen_threads > 0 ? chosen_threads : available_threads(); }
 
+void set_loop_order(std::uint32_t order) { loop_order = order; }
+
+namespace {
+
 #ifdef EIGENLIGHT_USE_TBB
 
-void parallel_for(int count, const std::function<void(int)>& body) {
+void run_loop(int count, const std::function<void(int)>& body) {
   if (thread_count() == 1) {
     for (int i = 0; i < count; ++i) body(i);
     return;
@@ -80,7 +93,7 @@ void parallel_for(int count, const std::function<void(int)>& body) {
 
 // Thread sanitizer cannot see into a TBB that was not built for it, and reports races that are
 // none; builds for it take this plain loop instead.
-void parallel_for(int count, const std::function<void(int)>& body) {
+void run_loop(int count, const std::function<void(int)>& body) {
   std::atomic<int> next{0};
   std::exception_ptr failure;
   std::mutex failure_mutex;
@@ -103,6 +116,13 @@ void parallel_for(int count, const std::function<void(int)>& body) {
 }
 
 #endif
+
+}  // namespace
+
+void parallel_for(int count, const std::function<void(int)>& body) {
+  if (loop_order == 0) return run_loop(count, body);
+  run_loop(count, [&](int i) { body(reordered(i, count)); });
+}
 
 void for_each_tile(const TileGrid& grid, const std::function<void(const Tile&)>& body) {
   parallel_for(grid.count(), [&](int index) { body(grid.tile(index)); });

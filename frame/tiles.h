@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 
 #include "frame/plane.h"
@@ -52,5 +53,9 @@ void for_each_tile(const TileGrid& grid, const std::function<void(const Tile&)>&
 /// loop runs.
 void set_thread_count(int threads);
 [[nodiscard]] int thread_count();
+
+/// Takes the loops above through their indices in another order, for tests that nothing depends on
+/// it: 0 is the plain order, every other number one of its own. Not to be called while a loop runs.
+void set_loop_order(std::uint32_t order);
 
 }  // namespace eigenlight
