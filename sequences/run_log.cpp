@@ -128,7 +128,9 @@ void RunLog::append(const FrameReport& report, int spp, const FrameOutput& outpu
                     {"guided", report.skipped_guided},
                     {"correction", report.skipped_correction}}},
                   {"non_finite_pixels", report.non_finite_pixels},
-                  {"non_finite_samples", report.non_finite_samples}};
+                  {"non_finite_samples", report.non_finite_samples},
+                  {"unguided_pixels", report.unguided_pixels},
+                  {"bounded_pixels", report.bounded_pixels}};
   errno = 0;
   file_ << line.dump() << '\n' << std::flush;
   if (!file_) {

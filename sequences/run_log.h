@@ -56,7 +56,7 @@ struct FrameOutput {
 ///   new_share            new_pixels / surface_pixels; 0 without surface
 ///   rank                 mean number of bases in use per tile with surface
 ///   skipped              {warp, surface, filter, guided}, in pixels
-///   non_finite_pixels, non_finite_samples
+///   non_finite_pixels, non_finite_samples, unguided_pixels, bounded_pixels
 class RunLog {
  public:
   /// Keeps the first `kept` lines of an older log, which must be those of `frames`, and drops all

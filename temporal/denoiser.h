@@ -35,6 +35,8 @@ struct FrameReport {
   std::int64_t extra_samples = 0;       ///< granted by the budget
   std::int64_t non_finite_pixels = 0;   ///< raw pixels with NaN or Inf: excluded
   std::int64_t non_finite_samples = 0;  ///< excluded by the source itself
+  std::int64_t unguided_pixels = 0;     ///< surfaces without usable normal or depth: unfiltered
+  std::int64_t bounded_pixels = 0;      ///< fireflies, whose light was scaled back
   double mean_rank = 0.0;               ///< bases in use per tile with surface
   /// What was skipped, in pixels.
   std::int64_t skipped_warp = 0;        ///< still: no taps, no copy

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "frame/guides.h"
 #include "reproject/warp.h"
 #include "temporal/predict.h"
 #include "temporal/signal.h"
@@ -20,6 +21,7 @@ constexpr int kStateVersion = 3;
 void EigenOptions::validate() const {
   taps.validate();
   shrink.validate();
+  fireflies.validate();
   correction.validate();
   innovation.validate();
   budget.validate();
@@ -41,6 +43,7 @@ EigenDenoiser::EigenDenoiser(const DenoiserOptions& options, const EigenOptions&
       warped_variance_(extent_),
       memory_(extent_, options.bases),
       budget_(extent_, parts.budget),
+      fireflies_(extent_, parts.fireflies),
       correction_(extent_, parts.correction),
       guided_(extent_, parts.guided),
       atrous_(extent_, parts.atrous),
@@ -94,11 +97,17 @@ void EigenDenoiser::start_frame(const StageTime& time) {
   report_.cut = !surfaces_.is_followed_by(frame_);
   report_[Stage::kSource] = time;
   for_each_tile(tiles_, [&](const Tile& tile) {
-    std::int64_t surface = 0;
+    TileCount& count = counts_[static_cast<std::size_t>(tile.index)];
+    count = {};
     for (int y = tile.y0; y < tile.y1; ++y) {
-      for (int x = tile.x0; x < tile.x1; ++x) surface += frame_.surface.id(x, y) != 0 ? 1 : 0;
+      for (int x = tile.x0; x < tile.x1; ++x) {
+        if (frame_.surface.id(x, y) == 0) continue;
+        ++count.surface;
+        if (has_usable_guides(frame_.surface, x, y)) continue;
+        ++count.unguided;
+        drop_guides(frame_, x, y);
+      }
     }
-    counts_[static_cast<std::size_t>(tile.index)] = {surface};
   });
 }
 
@@ -167,6 +176,7 @@ void EigenDenoiser::resample(FrameSource& source, std::int64_t planned) {
     report_.surface_pixels += count.surface;
     report_.new_pixels += count.fresh;
     report_.non_finite_pixels += count.non_finite;
+    report_.unguided_pixels += count.unguided;
   }
 }
 
@@ -179,6 +189,8 @@ void EigenDenoiser::project() {
     predict_tile(warped_bases_, coefficients_, light_, tile,
                  {prediction_, residual_, confirmed_, old_age_});
   });
+  report_.bounded_pixels = fireflies_.process(
+      {prediction_, confirmed_, old_age_, samples_, variance_}, light_, residual_);
   const CorrectionInputs inputs{frame_, light_, confirmed_, old_age_, samples_, variance_};
   const double corrected =
       options_.correct ? correction_.process(inputs, prediction_, residual_) : 0.0;
@@ -263,7 +275,8 @@ void EigenDenoiser::fill_young() {
   for_each_tile(tiles_, [&](const Tile& tile) {
     for (int y = tile.y0; y < tile.y1; ++y) {
       for (int x = tile.x0; x < tile.x1; ++x) {
-        if (young_(x, y) == 0) continue;
+        // Without geometry no neighbor can stand in.
+        if (young_(x, y) == 0 || std::isinf(frame_.surface.depth(x, y))) continue;
         const float own = new_age_(x, y) / options_.young;
         for (std::size_t c = 0; c < 3; ++c) {
           const float guided = std::max(guided_light_[c](x, y), 0.0f);

@@ -11,6 +11,7 @@
 #include "temporal/coefficients.h"
 #include "temporal/correction.h"
 #include "temporal/denoiser.h"
+#include "temporal/firefly_bound.h"
 #include "temporal/innovation.h"
 #include "temporal/light_memory.h"
 
@@ -19,6 +20,7 @@ namespace eigenlight {
 struct EigenOptions {
   TapOptions taps;
   ShrinkOptions shrink;
+  FireflyOptions fireflies;
   CorrectionOptions correction;
   InnovationOptions innovation;
   BudgetOptions budget;
@@ -71,7 +73,7 @@ class EigenDenoiser final : public Denoiser {
   void fill_young();
 
   struct TileCount {
-    std::int64_t surface = 0, fresh = 0, non_finite = 0;
+    std::int64_t surface = 0, fresh = 0, non_finite = 0, unguided = 0;
   };
 
   EigenOptions options_;
@@ -89,6 +91,7 @@ class EigenDenoiser final : public Denoiser {
 
   // Scratch, and what the last frame left for the caller.
   SampleBudget budget_;
+  FireflyBound fireflies_;
   Correction correction_;
   GuidedFilter guided_;
   Atrous atrous_;

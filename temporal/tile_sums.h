@@ -14,6 +14,9 @@ namespace eigenlight {
 /// window of 81 of them.
 inline constexpr float kLargestLight = 1e18f;
 
+/// Deviations beyond which a pixel's innovation loses influence; FireflyOptions has the same.
+inline constexpr float kOutlier = 8.0f;
+
 /// Index of (i, j), i <= j, in a packed upper triangle.
 [[nodiscard]] constexpr int packed(int i, int j) { return j * (j + 1) / 2 + i; }
 
@@ -38,7 +41,9 @@ struct SumInputs {
 /// Adds the pixels of `tile` (at most kSegment wide) to `sums`. A pixel counts with
 ///   m = n / (n + 1) / (variance + 0.01 * luminance(V_0)^2)
 /// (the inverse of its expected squared innovation, n its age), and with 0 where it has no history
-/// or u is not finite or beyond kLargestLight. Sums along a row are in float, over rows in double.
+/// or u is not finite or beyond kLargestLight. Where m luminance(r)^2 > kOutlier^2, m is divided by
+/// their ratio, unless more than an eighth of the row's pixels are such outliers: a few fireflies
+/// are no gain, a light that changed is. Sums along a row are in float, over rows in double.
 void accumulate_tile(const SumInputs& in, const Tile& tile, TileSums& sums);
 
 }  // namespace eigenlight

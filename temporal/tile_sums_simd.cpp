@@ -24,6 +24,21 @@ struct Row {
   int vectors;  // whole vectors of lanes that cover the row
 };
 
+// Takes influence from pixels that are off by far more than expected, unless that is many of them.
+void HoldBackOutliers(int count, Row& row) {
+  alignas(64) float bounded[kSegment];
+  int used = 0, outliers = 0;
+  for (int i = 0; i < count; ++i) {
+    const float off =
+        0.2126f * row.residual[0][i] + 0.7152f * row.residual[1][i] + 0.0722f * row.residual[2][i];
+    const float excess = row.weight[i] * off * off * (1.0f / (kOutlier * kOutlier));
+    bounded[i] = row.weight[i] / (excess > 1.0f ? excess : 1.0f);
+    used += row.weight[i] > 0.0f ? 1 : 0;
+    outliers += excess > 1.0f ? 1 : 0;
+  }
+  if (outliers > 0 && 8 * outliers <= used) std::copy_n(bounded, count, row.weight);
+}
+
 void LoadRow(const SumInputs& in, const Tile& segment, Row& row) {
   const F d;
   load_rows(in.bases, segment, row.bases);
@@ -58,6 +73,7 @@ void LoadRow(const SumInputs& in, const Tile& segment, Row& row) {
     row.weight[i] = 0.0f;
     for (auto& channel : row.residual) channel[i] = 0.0f;
   }
+  HoldBackOutliers(count, row);
 }
 
 // sum_c a_c b_c of one vector of pixels; the channels of a and b stand `a_step`, `b_step` apart.

@@ -1,7 +1,9 @@
 // Twin of temporal/tile_sums: all sums in double, pixel by pixel, from the formula in the header.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "temporal/tile_sums.h"
 
@@ -12,23 +14,55 @@ inline double luminance(double r, double g, double b) {
   return 0.2126 * r + 0.7152 * g + 0.0722 * b;
 }
 
+/// One pixel's weight before outliers are held back, and its residual.
+struct SumPixel {
+  double weight = 0.0, r[3] = {};
+};
+
+inline SumPixel sum_pixel(const SumInputs& in, int x, int y) {
+  const BasisField& v = in.bases;
+  SumPixel pixel;
+  bool finite = true;
+  for (int c = 0; c < 3; ++c) {
+    const double u = in.frame.indirect[static_cast<std::size_t>(c)](x, y);
+    pixel.r[c] = u - v.value(x, y, c, 0);
+    finite = finite && std::abs(u) <= kLargestLight;
+  }
+  const double n = v.age(x, y);
+  if (!(n > 0.0) || !finite) return {};
+  const double steady = luminance(v.value(x, y, 0, 0), v.value(x, y, 1, 0), v.value(x, y, 2, 0));
+  pixel.weight = n / (n + 1.0) / (in.variance(x, y) + 0.01 * steady * steady);
+  return pixel;
+}
+
+/// How far beyond the bound a pixel is: its weight is to be divided by this where it exceeds 1.
+inline double sum_excess(const SumPixel& pixel) {
+  const double off = luminance(pixel.r[0], pixel.r[1], pixel.r[2]) / kOutlier;
+  return pixel.weight * off * off;
+}
+
+/// The pixels of a row of a tile, few outliers held back.
+inline std::vector<SumPixel> sum_row(const SumInputs& in, const Tile& tile, int y) {
+  std::vector<SumPixel> row;
+  for (int x = tile.x0; x < tile.x1; ++x) row.push_back(sum_pixel(in, x, y));
+  int used = 0, outliers = 0;
+  for (const SumPixel& pixel : row) {
+    used += pixel.weight > 0.0 ? 1 : 0;
+    outliers += sum_excess(pixel) > 1.0 ? 1 : 0;
+  }
+  if (8 * outliers > used) return row;
+  for (SumPixel& pixel : row) pixel.weight /= std::max(1.0, sum_excess(pixel));
+  return row;
+}
+
 inline TileSums tile_sums(const SumInputs& in, const Tile& tile) {
   TileSums sums;
   const BasisField& v = in.bases;
   for (int y = tile.y0; y < tile.y1; ++y) {
+    const std::vector<SumPixel> row = sum_row(in, tile, y);
     for (int x = tile.x0; x < tile.x1; ++x) {
-      const double n = v.age(x, y);
-      double u[3], r[3];
-      bool finite = true;
-      for (int c = 0; c < 3; ++c) {
-        u[c] = in.frame.indirect[static_cast<std::size_t>(c)](x, y);
-        r[c] = u[c] - v.value(x, y, c, 0);
-        finite = finite && std::abs(u[c]) <= kLargestLight;
-      }
-      if (!(n > 0.0) || !finite) continue;
-      const double steady =
-          luminance(v.value(x, y, 0, 0), v.value(x, y, 1, 0), v.value(x, y, 2, 0));
-      const double m = n / (n + 1.0) / (in.variance(x, y) + 0.01 * steady * steady);
+      const auto& [m, r] = row[static_cast<std::size_t>(x - tile.x0)];
+      if (!(m > 0.0)) continue;
       sums.pixels += 1.0;
       for (int j = 0; j < v.bases(); ++j) {
         double along = 0.0;

@@ -132,6 +132,48 @@ TEST(EigenDenoiserStress, FramesWithoutAnyUsablePixelAreSurvived) {
   EXPECT_LT(largest_ratio(hit.frames[6], hit.frames[5], {30, 8}, 8), 0.02f);
 }
 
+// A normal of length 1e30 or a negative depth once made NaN of the pixels around, and a normal of
+// NaN halved the light of its own pixel.
+TEST(EigenDenoiserStress, SurfacesThatCannotBeFollowedKeepTheirOwnLight) {
+  AnalyticOptions options{.extent = {65, 40}, .frames = 4};
+  options.noise = 0.0f;
+  options.pattern = 0.0f;
+  for (const float bad : {kNan, kInf, 1e30f, -5.0f, 0.0f, 1e-40f}) {
+    for (const bool depth : {false, true}) {
+      if (depth && bad == kInf) continue;  // what stands for no surface
+      options.edit = [&](Frame& frame) {
+        frame.is_static = false;
+        (depth ? frame.surface.depth : frame.surface.normal[2])(30, 20) = bad;
+      };
+      const Pictures hit = run(options);
+      for (std::size_t n = 0; n < 4; ++n) {
+        EXPECT_EQ(hit.reports[n].unguided_pixels, 1) << bad;
+        EXPECT_EQ(hit.reports[n].non_finite_pixels, 0);
+        for (int y = 0; y < 40; ++y) {
+          for (int x = 0; x < 65; ++x) ASSERT_NEAR(hit.frames[n][1](x, y), 1.0f, 1e-4f) << bad;
+        }
+      }
+    }
+  }
+}
+
+TEST(EigenDenoiserStress, AFireflyIsCountedAndLeavesNoTrail) {
+  const Pictures clean = run(with_value(1.0f, -1)), hit = run(with_value(1e6f, 5));
+  EXPECT_EQ(hit.reports[5].bounded_pixels, clean.reports[5].bounded_pixels + 1);
+  for (std::size_t n = 5; n < 12; ++n) {
+    EXPECT_LT(largest_ratio(hit.frames[n], clean.frames[n], {20, 20}, 16), 1.0f) << n;
+  }
+}
+
+TEST(EigenDenoiserStress, LightThatIsTheSameEverywhereStaysSoFromTheFirstFrame) {
+  AnalyticOptions options{.extent = {65, 17}, .frames = 70};
+  options.noise = 0.0f;
+  options.pattern = 0.0f;
+  for (const auto& frame : run(options).frames) {
+    for (int x = 0; x < 65; ++x) ASSERT_NEAR(frame[0](x, 8), 1.0f, 8e-6f);
+  }
+}
+
 TEST(EigenDenoiserStress, StillScenesDoNotDrift) {
   AnalyticOptions options{.extent = {33, 17}, .frames = 900};
   AnalyticSource source(options);

@@ -1,0 +1,122 @@
+#include "temporal/firefly_bound.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "frame/luminance.h"
+
+namespace eigenlight {
+namespace {
+
+constexpr int kBlock = 8;
+
+void scale_towards(const Planes<3>& center, float factor, int x, int y, Planes<3>& light) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    const float from = center[c](x, y);
+    light[c](x, y) = from + factor * (light[c](x, y) - from);
+  }
+}
+
+}  // namespace
+
+void FireflyOptions::validate() const {
+  EL_CHECK(deviations >= 1.0f && deviations <= 1000.0f, "firefly deviations {}: expected [1, 1000]",
+           deviations);
+  EL_CHECK(times >= 1.0f && times <= 1000.0f, "firefly times {}: expected [1, 1000]", times);
+  EL_CHECK(share > 0.0f && share <= 1.0f, "firefly share {}: expected (0, 1]", share);
+}
+
+FireflyBound::FireflyBound(Extent extent, const FireflyOptions& options)
+    : options_(options),
+      grid_(extent, kBlock, kBlock),
+      blocks_(static_cast<std::size_t>(grid_.count())),
+      bounded_(static_cast<std::size_t>(grid_.rows())) {
+  options.validate();
+}
+
+// How far the residual of a confirmed pixel may go.
+float FireflyBound::reach(const FireflyInputs& in, int x, int y) const {
+  const float noise = in.variance(x, y) * (1.0f / in.samples(x, y) + 1.0f / in.age(x, y));
+  const float expected = 0.1f * luminance(in.prediction, x, y);
+  return options_.deviations * std::sqrt(noise + expected * expected);
+}
+
+FireflyBound::Block FireflyBound::count(const FireflyInputs& in, const Planes<3>& light,
+                                        const Plane<float>& residual, const Tile& tile) const {
+  Block block;
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    for (int x = tile.x0; x < tile.x1; ++x) {
+      if (in.confirmed(x, y) > 0.0f) {
+        ++block.confirmed;
+        block.outliers += std::abs(residual(x, y)) > reach(in, x, y) ? 1 : 0;
+      }
+      if (!(in.samples(x, y) > 0.0f)) continue;
+      ++block.usable;
+      block.root += static_cast<double>(std::sqrt(std::abs(luminance(light, x, y))));
+    }
+  }
+  return block;
+}
+
+FireflyBound::Region FireflyBound::region(const Tile& tile) const {
+  const int column = tile.index % grid_.columns(), row = tile.index / grid_.columns();
+  Block sum;
+  for (int y = std::max(row - 1, 0); y <= std::min(row + 1, grid_.rows() - 1); ++y) {
+    for (int x = std::max(column - 1, 0); x <= std::min(column + 1, grid_.columns() - 1); ++x) {
+      const Block& block = blocks_[static_cast<std::size_t>(y * grid_.columns() + x)];
+      sum.confirmed += block.confirmed;
+      sum.outliers += block.outliers;
+      sum.usable += block.usable;
+      sum.root += block.root;
+    }
+  }
+  const double mean = sum.usable > 0 ? sum.root / sum.usable : 0.0;
+  return {static_cast<float>(sum.outliers) <= options_.share * static_cast<float>(sum.confirmed),
+          options_.times * static_cast<float>(mean * mean)};
+}
+
+int FireflyBound::bound(const FireflyInputs& in, const Tile& tile, Planes<3>& light,
+                        Plane<float>& residual) const {
+  const Region around = region(tile);
+  int bounded = 0;
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    for (int x = tile.x0; x < tile.x1; ++x) {
+      if (in.confirmed(x, y) > 0.0f) {
+        const float size = std::abs(residual(x, y));
+        if (!around.is_steady || size == 0.0f) continue;
+        const float allowed = reach(in, x, y);
+        if (size <= allowed) continue;
+        scale_towards(in.prediction, allowed / size, x, y, light);
+        residual(x, y) *= allowed / size;
+        ++bounded;
+      } else if (in.samples(x, y) > 0.0f) {
+        const float size = std::abs(luminance(light, x, y));
+        if (size <= around.brightness) continue;
+        for (auto& plane : light) plane(x, y) *= around.brightness / size;
+        ++bounded;
+      }
+    }
+  }
+  return bounded;
+}
+
+std::int64_t FireflyBound::process(const FireflyInputs& in, Planes<3>& light,
+                                   Plane<float>& residual) {
+  const int columns = grid_.columns();
+  parallel_for(grid_.rows(), [&](int row) {
+    for (int i = row * columns; i < (row + 1) * columns; ++i) {
+      blocks_[static_cast<std::size_t>(i)] = count(in, light, residual, grid_.tile(i));
+    }
+  });
+  parallel_for(grid_.rows(), [&](int row) {
+    int bounded = 0;
+    for (int i = row * columns; i < (row + 1) * columns; ++i) {
+      bounded += bound(in, grid_.tile(i), light, residual);
+    }
+    bounded_[static_cast<std::size_t>(row)] = bounded;
+  });
+  return std::accumulate(bounded_.begin(), bounded_.end(), std::int64_t{0});
+}
+
+}  // namespace eigenlight

@@ -1,0 +1,72 @@
+// Samples far beyond what history and neighbors expect may move a pixel only so far.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "frame/frame.h"
+#include "frame/tiles.h"
+
+namespace eigenlight {
+
+struct FireflyOptions {
+  /// [1, 1000] standard deviations that a sample may be off its prediction. At 8 exponential noise
+  /// loses 0.03 % of its light, and a history of 64 frames moves by one deviation of its own.
+  float deviations = 8.0f;
+  /// [1, 1000] times the light around it that a new pixel may be as bright as.
+  float times = 16.0f;
+  /// (0, 1] share of the pixels around that may be off so far: more are a change of the light.
+  float share = 0.125f;
+
+  void validate() const;  ///< throws std::invalid_argument naming the field
+};
+
+struct FireflyInputs {
+  const Planes<3>& prediction;    ///< what history expects; read where `confirmed` is 1
+  const Plane<float>& confirmed;  ///< 1 where there is history and the light is usable, else 0
+  const Plane<float>& age;        ///< n, of the history
+  const Plane<float>& samples;   ///< s, this frame's samples over its regular number; 0: not usable
+  const Plane<float>& variance;  ///< v, of one frame's luminance
+};
+
+/// Bounded influence (Huber 1964). A residual r of luminance, with
+///   sigma^2 = v (1/s + 1/n) + (0.1 luminance(prediction))^2,
+/// is an outlier beyond `deviations` sigma. Where no more than `share` of the confirmed pixels in
+/// the 3 x 3 blocks of 8 x 8 pixels around are outliers, light and residual are scaled back to that
+/// distance from the prediction; where more are, the light itself has changed and nothing is done.
+/// A new pixel may be `times` as bright as (mean sqrt(luminance))^2 over the usable pixels of those
+/// blocks, which a few fireflies hardly move. Light that is bright in every frame is so learned
+/// step by step, light that was bright once leaves no trail.
+class FireflyBound {
+ public:
+  /// Throws std::invalid_argument on a bad size or option.
+  FireflyBound(Extent extent, const FireflyOptions& options);
+
+  /// Changes `light` and `residual` (luminance of light - prediction). Returns how many pixels.
+  std::int64_t process(const FireflyInputs& in, Planes<3>& light, Plane<float>& residual);
+
+ private:
+  struct Block {
+    int confirmed = 0, outliers = 0, usable = 0;
+    double root = 0.0;  // sum of sqrt(luminance)
+  };
+  /// Of a block and its neighbors.
+  struct Region {
+    bool is_steady;    // outliers are few
+    float brightness;  // that a new pixel may have
+  };
+
+  [[nodiscard]] float reach(const FireflyInputs& in, int x, int y) const;
+  [[nodiscard]] Block count(const FireflyInputs& in, const Planes<3>& light,
+                            const Plane<float>& residual, const Tile& tile) const;
+  [[nodiscard]] Region region(const Tile& tile) const;
+  [[nodiscard]] int bound(const FireflyInputs& in, const Tile& tile, Planes<3>& light,
+                          Plane<float>& residual) const;
+
+  FireflyOptions options_;
+  TileGrid grid_;  // of blocks
+  std::vector<Block> blocks_;
+  std::vector<int> bounded_;  // per row of blocks
+};
+
+}  // namespace eigenlight

@@ -1,0 +1,96 @@
+#include "temporal/firefly_bound.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "frame/luminance.h"
+
+namespace eigenlight {
+namespace {
+
+constexpr Extent kExtent{40, 24};
+
+// Gray light of 1, predicted so, of variance 0.01, at age 4: sigma is sqrt(0.0125 + 0.01) = 0.15.
+struct Wall {
+  Planes<3> prediction = make_planes<3>(kExtent), light = make_planes<3>(kExtent);
+  Plane<float> confirmed{kExtent}, age{kExtent}, samples{kExtent}, variance{kExtent},
+      residual{kExtent};
+
+  Wall() {
+    for (auto& plane : prediction) plane.fill(1.0f);
+    for (auto& plane : light) plane.fill(1.0f);
+    confirmed.fill(1.0f);
+    age.fill(4.0f);
+    samples.fill(1.0f);
+    variance.fill(0.01f);
+  }
+  void set(int x, int y, float value) {
+    for (auto& plane : light) plane(x, y) = value;
+    residual(x, y) = value - 1.0f;
+  }
+  std::int64_t process() {
+    FireflyBound bound(kExtent, {});
+    return bound.process({prediction, confirmed, age, samples, variance}, light, residual);
+  }
+};
+
+TEST(FireflyBound, ALoneOutlierGoesEightDeviationsAndKeepsItsHue) {
+  Wall p;
+  p.light[0](13, 9) = 3001.0f;
+  p.light[1](13, 9) = 1001.0f;
+  p.light[2](13, 9) = 1.0f;
+  p.residual(13, 9) = luminance(p.light, 13, 9) - 1.0f;
+  EXPECT_EQ(p.process(), 1);
+  const float allowed = 8.0f * std::sqrt(0.01f * 1.25f + 0.01f);
+  EXPECT_NEAR(p.residual(13, 9), allowed, 1e-4f);
+  EXPECT_NEAR(luminance(p.light, 13, 9) - 1.0f, allowed, 1e-4f);
+  EXPECT_NEAR((p.light[0](13, 9) - 1.0f) / (p.light[1](13, 9) - 1.0f), 3.0f, 1e-4f);
+  EXPECT_EQ(p.light[2](13, 9), 1.0f);
+}
+
+TEST(FireflyBound, WhatIsWithinReachStays) {
+  Wall p;
+  p.set(13, 9, 1.0f + 7.9f * 0.15f);
+  p.set(20, 9, 1.0f - 7.9f * 0.15f);
+  EXPECT_EQ(p.process(), 0);
+  EXPECT_EQ(p.light[1](13, 9), 1.0f + 7.9f * 0.15f);
+}
+
+TEST(FireflyBound, ALightThatChangesIsNoFirefly) {
+  Wall p;
+  for (int y = 0; y < 24; ++y) {
+    for (int x = 8; x < 24; ++x) p.set(x, y, 100.0f);
+  }
+  EXPECT_EQ(p.process(), 0);
+  EXPECT_EQ(p.light[0](12, 12), 100.0f);
+  EXPECT_EQ(p.residual(12, 12), 99.0f);
+}
+
+TEST(FireflyBound, NewPixelsAreHeldAgainstTheLightAroundThem) {
+  Wall p;
+  p.confirmed.fill(0.0f);
+  p.set(13, 9, 1e6f);
+  EXPECT_EQ(p.process(), 1);
+  // 576 pixels around, one of them with sqrt(1e6) = 1000.
+  const float root = (575.0f + 1000.0f) / 576.0f;
+  EXPECT_NEAR(p.light[1](13, 9), 16.0f * root * root, 0.1f);
+  EXPECT_EQ(p.light[1](14, 9), 1.0f);
+}
+
+TEST(FireflyBound, WhatIsNotUsableIsLeftAlone) {
+  Wall p;
+  p.confirmed(13, 9) = p.samples(13, 9) = 0.0f;
+  p.light[0](13, 9) = NAN;
+  EXPECT_EQ(p.process(), 0);
+  EXPECT_TRUE(std::isnan(p.light[0](13, 9)));
+}
+
+TEST(FireflyBound, RefusesBadOptions) {
+  EXPECT_THROW(FireflyBound(kExtent, {.deviations = 0.5f}), std::invalid_argument);
+  EXPECT_THROW(FireflyBound(kExtent, {.times = 0.0f}), std::invalid_argument);
+  EXPECT_THROW(FireflyBound(kExtent, {.share = 0.0f}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace eigenlight
