@@ -13,6 +13,7 @@
 #include "sequences/evaluate_command.h"
 #include "sequences/list_commands.h"
 #include "sequences/render_command.h"
+#include "sequences/stress_command.h"
 #include "sequences/train_pyramid_command.h"
 
 namespace eigenlight {
@@ -63,6 +64,18 @@ void add_run_options(CLI::App& command, RenderSettings& settings) {
   command.add_flag("--json", settings.json, "Print the summary as JSON");
 }
 
+CLI::App* add_stress_options(CLI::App& app, StressSettings& settings) {
+  CLI::App* command =
+      app.add_subcommand("stress", "Try everything that must not break the denoiser");
+  command->add_flag("--json", settings.json, "Print JSON in place of the table");
+  command->add_flag("--long", settings.takes_long, "Also the cases that take minutes");
+  command->add_option("--case", settings.only, "One case, or one theme such as values");
+  command->add_option("--seed", settings.seed, "Other seeds, other noise")->capture_default_str();
+  command->add_option("-o,--output", settings.directory, "Directory for what failing cases leave")
+      ->capture_default_str();
+  return command;
+}
+
 // CLI11 explains over several lines at times; one is enough.
 std::string one_line(std::string text) {
   std::replace(text.begin(), text.end(), '\n', ' ');
@@ -86,6 +99,8 @@ int parse_and_run(std::span<const char* const> args, const Console& console) {
   add_train_pyramid_command(app, console);
   CompareSettings compare_settings;
   const CLI::App* compare = add_compare_command(app, compare_settings);
+  StressSettings stress_settings;
+  const CLI::App* stress = add_stress_options(app, stress_settings);
   try {
     app.parse(static_cast<int>(args.size()), args.data());
   } catch (const CLI::Success& help_or_version) {
@@ -105,6 +120,7 @@ int parse_and_run(std::span<const char* const> args, const Console& console) {
   if (scenes->parsed()) list_scenes(console.out);
   if (methods->parsed()) (lists_parts ? list_parts : list_methods)(console.out);
   if (compare->parsed()) return compare_command(compare_settings, console);
+  if (stress->parsed()) return stress_command(stress_settings, console);
   return render->parsed() ? render_command(settings, console) : 0;
 }
 

@@ -1,0 +1,276 @@
+// Frames and bases that leave the algebra little to work with.
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "reproject/basis_field.h"
+#include "reproject/surface_history.h"
+#include "sequences/stress/measures.h"
+#include "sequences/stress/stress_case.h"
+#include "temporal/light_memory.h"
+
+namespace eigenlight {
+namespace {
+
+constexpr Extent kExtent{64, 48};
+
+// Largest |picture - value| over all pixels.
+double largest_off(const Planes<3>& picture, float value) {
+  double largest = 0.0;
+  for (const auto& plane : picture) {
+    for (int y = 0; y < plane.height(); ++y) {
+      for (int x = 0; x < plane.width(); ++x) {
+        const double off = std::abs(static_cast<double>(plane(x, y)) - value);
+        if (std::isnan(off)) return off;
+        largest = std::max(largest, off);
+      }
+    }
+  }
+  return largest;
+}
+
+StressFinding check_black(Lab& lab) {
+  AnalyticOptions options{.extent = kExtent, .frames = 20};
+  options.gain = [](int) { return 0.0f; };
+  StressRun run(lab, options);
+  while (run.step()) lab.note(largest_off(run.picture(), 0.0f));
+  return worst_of(lab, 0.0);
+}
+
+// Light of one value: rounding alone may move it, one ulp in each of the filter's four passes and
+// in each frame until the age limit.
+StressFinding check_constant(Lab& lab) {
+  AnalyticOptions options{.extent = kExtent, .frames = 100};
+  options.noise = options.pattern = 0.0f;
+  StressRun run(lab, options);
+  while (run.step()) lab.note(largest_off(run.picture(), 1.0f));
+  return worst_of(lab, (4 + 64) * 1.2e-7);
+}
+
+// The same noisy frame for ever: a light with fine structure. Its energy stays, within three
+// deviations of the mean of its 9216 values (0.3 % each), which filters weigh in another way.
+StressFinding check_identical(Lab& lab) {
+  AnalyticOptions options{.extent = kExtent, .frames = 40};
+  Frame first;
+  options.edit = [&first](Frame& frame) {
+    if (frame.index == 0) {
+      first.resize(kExtent);
+      copy_planes(frame.indirect, first.indirect);
+    }
+    copy_planes(first.indirect, frame.indirect);
+  };
+  StressRun run(lab, options);
+  while (run.step()) {
+    double shown = 0.0, given = 0.0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      for (int y = 0; y < kExtent.height; ++y) {
+        for (int x = 0; x < kExtent.width; ++x) {
+          shown += static_cast<double>(run.picture()[c](x, y));
+          given += static_cast<double>(first.indirect[c](x, y));
+        }
+      }
+    }
+    lab.note(std::abs(shown / given - 1.0));
+  }
+  return worst_of(lab, 0.01);
+}
+
+// Rewrites the bases of an `eigenlight` history of three, with all slots in use.
+void edit_bases(StressRun& run, const std::function<void(BasisField&)>& edit) {
+  StateWriter saved;
+  run.denoiser().save(saved);
+  StateReader in({saved.bytes().data(), saved.bytes().size()});
+  SurfaceHistory surfaces(kExtent);
+  BasisField field(kExtent, 3);
+  LightMemory memory(kExtent, 3);
+  Plane<float> variance;
+  int version = 0, bases = 0;
+  in.value("eigenlight", version);
+  surfaces.load(in);
+  in.value("bases", bases);
+  in.plane("basis values", field.data());
+  in.plane("variance", variance);
+  memory.load(in);
+  edit(field);
+  memory.born(1);
+  memory.born(2);
+  StateWriter out;
+  out.value("eigenlight", version);
+  surfaces.save(out);
+  out.value("bases", bases);
+  out.plane("basis values", field.data());
+  out.plane("variance", variance);
+  memory.save(out);
+  StateReader edited({out.bytes().data(), out.bytes().size()});
+  run.denoiser().load(edited);
+}
+
+// V_k = a_k V_0 + b_k times a checkered V_0, which is nearly orthogonal to it.
+struct Mix {
+  std::string_view name;
+  float a1, b1, a2, b2;
+};
+// cosine = a / sqrt(a^2 + b^2): b = 4.472e-4 a makes it 1 - 1e-7.
+constexpr std::array<Mix, 5> kMixes{{{"zero", 0, 0, 0, 0},
+                                     {"duplicate", 1, 0, 1, 0},
+                                     {"opposite", -1, 0, 1, 0},
+                                     {"cosine 1 - 1e-7", 1, 4.472e-4f, 0.5f, 4.472e-4f},
+                                     {"tiny", 1e-12f, 0, 0, 1e-18f}}};
+
+AnalyticOptions pulsing() {
+  AnalyticOptions options{.extent = kExtent, .frames = 24};
+  options.gain = [](int f) {
+    return f < 8 ? 1.0f : 1.0f + 0.3f * std::sin(0.7f * static_cast<float>(f - 8));
+  };
+  return options;
+}
+
+// Error over that of the frames' own samples.
+StressFinding check_bases(Lab& lab) {
+  constexpr double kInput = 0.25 / 3;  // noise^2 / samples
+  for (const Mix& mix : kMixes) {
+    StressRun run(lab, pulsing());
+    while (run.step()) {
+      const int frame = run.frame().index;
+      lab.note(relative_error(run) / kInput, mix.name);
+      if (frame != 7) continue;
+      edit_bases(run, [&](BasisField& field) {
+        for (int y = 0; y < kExtent.height; ++y) {
+          for (int x = 0; x < kExtent.width; ++x) {
+            const float sign = (x + y) % 2 == 0 ? 1.0f : -1.0f;
+            for (int c = 0; c < 3; ++c) {
+              const float v = field.value(x, y, c, 0);
+              field.value(x, y, c, 1) = (mix.a1 + mix.b1 * sign) * v;
+              field.value(x, y, c, 2) = (mix.a2 + mix.b2 * sign) * v;
+            }
+          }
+        }
+      });
+    }
+  }
+  return worst_of(lab, 1.0);
+}
+
+// More bases than the light has modes: they must not cost anything.
+StressFinding check_rank(Lab& lab) {
+  double with = 0.0, without = 0.0;
+  StressRun eight(lab, pulsing(), "eigenlight", 8), one(lab, pulsing(), "eigenlight", 1);
+  while (one.step() && eight.step()) {
+    with += relative_error(eight);
+    without += relative_error(one);
+  }
+  lab.note(with / without);
+  return worst_of(lab, 1.05);
+}
+
+// One pixel with a surface in each coefficient tile. Bound: kChance deviations of a mean of its own
+// samples, as it has no neighbors.
+StressFinding check_lone_pixels(Lab& lab) {
+  AnalyticOptions options{.extent = kExtent, .frames = 30};
+  const auto alone = [](int x, int y) { return x % 32 == 13 && y % 32 == 7; };
+  options.edit = [&](Frame& frame) {
+    for (int y = 0; y < kExtent.height; ++y) {
+      for (int x = 0; x < kExtent.width; ++x) {
+        if (alone(x, y)) continue;
+        frame.surface.id(x, y) = 0;
+        frame.surface.depth(x, y) = std::numeric_limits<float>::infinity();
+        for (auto& plane : frame.surface.normal) plane(x, y) = 0.0f;
+      }
+    }
+  };
+  StressRun run(lab, options);
+  while (run.step()) {
+    const double sigma = 0.5 / std::sqrt(3.0 * std::min(run.frame().index + 1, 64));
+    for (int y = 7; y < kExtent.height; y += 32) {
+      for (int x = 13; x < kExtent.width; x += 32) {
+        for (int c = 0; c < 3; ++c) {
+          const float value = run.picture()[static_cast<std::size_t>(c)](x, y);
+          lab.note(std::abs(static_cast<double>(value) / run.truth({x, y}, c) - 1.0) / sigma);
+        }
+      }
+    }
+  }
+  return worst_of(lab, kChance);
+}
+
+// Errors long after ages have saturated over those just after: the same but for chance, some 1 % of
+// 60 frames of 3072 pixels.
+StressFinding check_saturated(Lab& lab) {
+  StressRun run(lab, {.extent = kExtent, .frames = 320});
+  double early = 0.0, late = 0.0;
+  while (run.step()) {
+    const int frame = run.frame().index;
+    if (frame >= 130 && frame < 190) early += relative_error(run);
+    if (frame >= 260) late += relative_error(run);
+  }
+  lab.note(late / early);
+  return worst_of(lab, 1.1);
+}
+
+// Error four frames after a jump of the gain, over that of the mean of four frames' own samples: a
+// history that cannot follow must not be in the way.
+StressFinding after_gain(Lab& lab, float gain) {
+  constexpr double kInput = 0.25 / (4 * 3);  // noise^2 / samples
+  AnalyticOptions options{.extent = kExtent, .frames = 28};
+  options.gain = [gain](int f) { return f >= 12 && f < 20 ? gain : 1.0f; };
+  StressRun run(lab, options);
+  while (run.step()) {
+    const int frame = run.frame().index;
+    if (frame == 15 && gain > 0.0f) lab.note(relative_error(run) / kInput, "4 frames after");
+    if (frame == 15 && gain == 0.0f) lab.note(1e3 * largest_off(run.picture(), 0.0f), "dark");
+    if (frame == 23) lab.note(relative_error(run) / kInput, "4 frames after the light is back");
+  }
+  return worst_of(lab, 1.0);
+}
+
+StressFinding check_off_and_on(Lab& lab) { return after_gain(lab, 0.0f); }
+StressFinding check_dimmed(Lab& lab) { return after_gain(lab, 1e-6f); }
+StressFinding check_flooded(Lab& lab) { return after_gain(lab, 1e6f); }
+
+// Units of radiance do not matter.
+StressFinding check_brightness(Lab& lab) {
+  AnalyticOptions options{.extent = kExtent, .frames = 16};
+  options.slide = {0.4f, 0.2f};
+  const auto pulse = pulsing().gain;
+  for (const float scale : {1e-6f, 1e-3f, 3.0f, 1e3f, 1e6f}) {
+    options.gain = pulse;
+    StressRun plain(lab, options);
+    options.gain = [&](int f) { return scale * pulse(f); };
+    StressRun scaled(lab, options);
+    while (plain.step() && scaled.step()) {
+      Planes<3> back = copy_of(scaled.picture());
+      for (auto& plane : back) {
+        for (float& value : plane.storage()) value /= scale;
+      }
+      lab.note(largest_relative(back, plain.picture()), fmt::format("times {:g}", scale));
+    }
+  }
+  return worst_of(lab, 1e-5);
+}
+
+}  // namespace
+
+std::vector<StressCase> algebra_cases() {
+  return {{"algebra.black", "frames without light: largest value shown", false, check_black},
+          {"algebra.constant", "the same light everywhere: largest error, against rounding", false,
+           check_constant},
+          {"algebra.identical", "one noisy frame for ever: energy lost or gained", false,
+           check_identical},
+          {"algebra.bases", "zero, equal and nearly parallel bases: error over that of the input",
+           false, check_bases},
+          {"algebra.rank", "8 bases for light of one mode: error over that of 1 basis", false,
+           check_rank},
+          {"algebra.lone-pixels", "one pixel a tile: error in deviations of its samples' mean",
+           false, check_lone_pixels},
+          {"algebra.saturated", "error at ages long saturated over that just after", false,
+           check_saturated},
+          {"algebra.off-and-on", "light off, on: error 4 frames later over that of 4 frames' mean",
+           false, check_off_and_on},
+          {"algebra.dimmed", "light times 1e-6, and back: the same", false, check_dimmed},
+          {"algebra.flooded", "light times 1e6, and back: the same", false, check_flooded},
+          {"algebra.brightness", "all light times 1e-6 .. 1e6: relative change of the picture",
+           false, check_brightness}};
+}
+
+}  // namespace eigenlight

@@ -1,0 +1,78 @@
+#include "sequences/stress/lab.h"
+
+#include <cmath>
+
+#include "sequences/checkpoint.h"
+#include "sequences/exr_io.h"
+
+namespace eigenlight {
+
+void Lab::note(double figure, std::string_view what) {
+  if (std::isnan(worst_) || figure < worst_) return;  // a NaN passes
+  if (figure == worst_ && worst_step_ > 0) return;    // the first of equals
+  worst_ = figure;
+  worst_what_ = what;
+  worst_step_ = steps_;
+}
+
+StressRun::StressRun(Lab& lab, AnalyticOptions options, std::string_view method, int bases)
+    : lab_(lab),
+      source_([&] {
+        options.seed = hash_key(lab.seed(), options.seed);
+        return options;
+      }()),
+      denoiser_(make_denoiser(method, {options.extent, bases})) {}
+
+const Planes<3>* StressRun::step() {
+  ++lab_.steps_;
+  const bool recorded = lab_.recording_ && lab_.recording_->step == lab_.steps_;
+  const Planes<3>* picture = recorded ? recorded_step() : denoiser_->step(source_);
+  if (!picture) {
+    --lab_.steps_;  // the sequence had ended
+    return nullptr;
+  }
+  return picture_ = picture;
+}
+
+const Planes<3>* StressRun::recorded_step() {
+  const auto& directory = lab_.recording_->directory;
+  std::filesystem::create_directories(directory);
+  if (picture_) write("before");
+  StateWriter state;
+  denoiser_->save(state);
+  write_checkpoint(directory / "state.bin",
+                   {"stress", static_cast<std::uint64_t>(lab_.steps_ - 1), state.bytes()});
+  const Planes<3>* picture = denoiser_->step(source_);
+  if (picture) {
+    picture_ = picture;
+    write("frame");
+  }
+  return picture;
+}
+
+void StressRun::write(std::string_view name) const {
+  constexpr std::string_view kAxes = "RGBXYZ";
+  std::vector<ExrChannel> channels;
+  const auto add = [&](std::string_view layer, const auto& planes, std::size_t first_axis) {
+    for (std::size_t c = 0; c < planes.size(); ++c) {
+      channels.push_back(
+          {fmt::format("{}{}", layer, kAxes[first_axis + c]), ExrType::kFloat, &planes[c]});
+    }
+  };
+  add("", *picture_, 0);
+  add("noisy.", frame().indirect, 0);
+  add("N.", frame().surface.normal, 3);
+  add("motion.", frame().motion, 3);
+  channels.push_back({"Z", ExrType::kFloat, &frame().surface.depth});
+  channels.push_back({"age", ExrType::kFloat, &denoiser_->age()});
+  const ExrAttribute number{"eigenlight.frame", frame().index};
+  write_exr(lab_.recording_->directory / fmt::format("{}.exr", name), channels, {&number, 1});
+}
+
+const Planes<3>& StressRun::finish() {
+  while (step()) {
+  }
+  return *picture_;
+}
+
+}  // namespace eigenlight

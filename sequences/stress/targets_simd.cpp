@@ -1,0 +1,21 @@
+#include <hwy/targets.h>
+
+#include "sequences/stress/targets.h"
+
+namespace eigenlight {
+
+void for_each_instruction_set(const std::function<void(std::string_view)>& body) {
+  struct Restore {
+    ~Restore() {
+      hwy::SetSupportedTargetsForTest(0);
+      hwy::GetChosenTarget().DeInit();
+    }
+  } restore;
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    hwy::SetSupportedTargetsForTest(target);
+    hwy::GetChosenTarget().Update(target);
+    body(hwy::TargetName(target));
+  }
+}
+
+}  // namespace eigenlight
