@@ -8,12 +8,12 @@
 namespace eigenlight {
 
 /// Whether the surface of pixel (x, y) has a normal of unit length (squared within 10 %, more than
-/// half floats round) and a depth in (0, 1e18), beyond which float cannot square it. NaN is no.
+/// half floats round) and a depth in (1e-18, 1e18), beyond which float cannot square it. NaN is no.
 [[nodiscard]] inline bool has_usable_guides(const GBuffer& surface, int x, int y) {
   float square = 0.0f;
   for (const auto& plane : surface.normal) square += plane(x, y) * plane(x, y);
   const float depth = surface.depth(x, y);
-  return square > 0.9f && square < 1.1f && depth > 0.0f && depth < 1e18f;
+  return square > 0.9f && square < 1.1f && depth > 1e-18f && depth < 1e18f;
 }
 
 /// Gives pixel (x, y) the geometry of no surface, normal 0 and depth +inf, but leaves it its id: no
