@@ -171,10 +171,8 @@ StressFinding check_field(Lab& lab) {
     for (const Shape& shape : kShapes) {
       for (const bool for_ever : {false, true}) {
         // What float can square and many pixels share, or one keeps, is light and no fault.
-        if (bad.value == 9e17f && for_ever) continue;
-        if ((bad.value == 9e17f || bad.value == -5.0f) && kField == Field::kSignal &&
-            shape.pixels() > 64)
-          continue;
+        const bool is_light = kField == Field::kSignal && !bad.counted && shape.pixels() > 64;
+        if (is_light || (bad.value == 9e17f && for_ever)) continue;
         check_fault(lab, {kField, bad, shape, for_ever}, clean);
       }
     }
