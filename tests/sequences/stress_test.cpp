@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cctype>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -42,8 +44,8 @@ TEST_P(StressCaseTest, StaysWithinItsBound) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, StressCaseTest, testing::ValuesIn(quick_cases()),
-                         [](const auto& info) {
-                           std::string name(info.param.name);
+                         [](const auto& stress) {
+                           std::string name(stress.param.name);
                            std::replace_if(
                                name.begin(), name.end(),
                                [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
