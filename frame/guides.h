@@ -3,17 +3,17 @@
 
 #include <limits>
 
-#include "frame/frame.h"
+#include "frame/usable_surface.h"
 
 namespace eigenlight {
 
-/// Whether the surface of pixel (x, y) has a normal of unit length (squared within 10 %, more than
-/// half floats round) and a depth in (1e-18, 1e18), beyond which float cannot square it. NaN is no.
+/// Whether pixel (x, y) shows a usable surface whose normal has unit length, squared within 10 %,
+/// which is more than half floats round.
 [[nodiscard]] inline bool has_usable_guides(const GBuffer& surface, int x, int y) {
+  if (!is_usable_surface(surface, x, y)) return false;
   float square = 0.0f;
   for (const auto& plane : surface.normal) square += plane(x, y) * plane(x, y);
-  const float depth = surface.depth(x, y);
-  return square > 0.9f && square < 1.1f && depth > 1e-18f && depth < 1e18f;
+  return square > 0.9f && square < 1.1f;
 }
 
 /// Gives pixel (x, y) the geometry of no surface, normal 0 and depth +inf, but leaves it its id: no
