@@ -76,29 +76,43 @@ StressFinding check_identical(Lab& lab) {
   return worst_of(lab, 0.01);
 }
 
-// Rewrites the bases of an `eigenlight` history of three, with all slots in use.
+// Steady light and age of a history of any number of bases, with room for three.
+BasisField three_bases(const BasisField& history) {
+  BasisField three(kExtent, 3);
+  for (int y = 0; y < kExtent.height; ++y) {
+    for (int x = 0; x < kExtent.width; ++x) {
+      for (int c = 0; c < 3; ++c) three.value(x, y, c, 0) = history.value(x, y, c, 0);
+      three.age(x, y) = history.age(x, y);
+    }
+  }
+  return three;
+}
+
+// Rewrites the bases of an `eigenlight` history, which has three in use afterwards.
 void edit_bases(StressRun& run, const std::function<void(BasisField&)>& edit) {
   StateWriter saved;
   run.denoiser().save(saved);
   StateReader in({saved.bytes().data(), saved.bytes().size()});
   SurfaceHistory surfaces(kExtent);
-  BasisField field(kExtent, 3);
   LightMemory memory(kExtent, 3);
   Plane<float> variance;
-  int version = 0, bases = 0;
+  int version = 0, bases = 0, used = 0;
   in.value("eigenlight", version);
   surfaces.load(in);
   in.value("bases", bases);
-  in.plane("basis values", field.data());
+  in.value("bases in use", used);
+  BasisField history(kExtent, used);
+  in.plane("basis values", history.data());
   in.plane("variance", variance);
   memory.load(in);
+  BasisField field = three_bases(history);
   edit(field);
-  memory.born(1);
-  memory.born(2);
+  for (const int k : {1, 2}) memory.born(k);
   StateWriter out;
   out.value("eigenlight", version);
   surfaces.save(out);
   out.value("bases", bases);
+  out.value("bases in use", field.bases());
   out.plane("basis values", field.data());
   out.plane("variance", variance);
   memory.save(out);
