@@ -63,6 +63,7 @@ struct ReflectionEdge {
   [[nodiscard]] float energy(const float* p, const float* q, float d2) const {
     const float t = std::min(std::abs(p[4] - q[4]) / 0.5f, 1.0f);
     const float alike = 1.0f - t * t * (3.0f - 2.0f * t);
+    if (!(alike > 0.0f)) return std::numeric_limits<float>::infinity();
     return geometry.energy(p, q, d2) - std::log(alike);
   }
   [[nodiscard]] float radius(const float* a) const { return geometry.blur_radius * a[4]; }

@@ -1,6 +1,7 @@
 #include "spatial/sample_budget.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace eigenlight {
 namespace {
@@ -8,6 +9,8 @@ namespace {
 // Age in whole samples, saturated to the last bin. To the nearest, because most ages are whole
 // numbers but for the rounding of their warp, and must not lose a sample to it.
 int age_samples(float age, int spp) {
+  // No age is negative or NaN, but as an index it would reach beyond the histogram.
+  if (!std::isgreater(age, 0.0f)) return 0;
   return static_cast<int>(std::min(age * static_cast<float>(spp) + 0.5f, 255.0f));
 }
 

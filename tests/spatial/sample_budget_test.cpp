@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "frame/float_traps.h"
 #include "tests/support/extents.h"
@@ -69,6 +70,19 @@ int brute_force_level(const Scene& scene, const BudgetOptions& options) {
     if (static_cast<double>(cost) <= limit) best = level;
   }
   return best;
+}
+
+// Only a damaged state holds such ages; they must not become indices.
+TEST(SampleBudget, AgesThatAreNoneCountAsNew) {
+  const BudgetOptions options{.share = 20.0};
+  Scene fresh({16, 4});
+  fresh.age.fill(0.0f);
+  const std::int64_t wanted = fresh.run(options).samples;
+  for (const float age : {std::numeric_limits<float>::quiet_NaN(), -1e14f, -1.0f}) {
+    Scene damaged({16, 4});
+    damaged.age.fill(age);
+    EXPECT_EQ(damaged.run(options).samples, wanted) << age;
+  }
 }
 
 TEST(SampleBudget, AgreesWithBruteForce) {
