@@ -50,7 +50,7 @@ void check_method(const std::string& name) {
 }  // namespace
 
 std::string default_method() {
-  constexpr std::string_view kOurs = "eigenlight";
+  static constexpr std::string_view kOurs = "eigenlight";
   const bool present = std::any_of(methods().begin(), methods().end(),
                                    [](const Method& method) { return method.name == kOurs; });
   return std::string(present ? kOurs : methods().front().name);

@@ -11,7 +11,6 @@ namespace eigenlight {
 namespace {
 
 constexpr int kBlock = 32, kFeatures = 10, kPositionFeatures = 6;
-constexpr int kFirstPosition = kFeatures - kPositionFeatures;
 constexpr int kFewestRows = 4 * kFeatures;
 
 // The offsets of the authors' implementation, one a frame.
