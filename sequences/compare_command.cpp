@@ -15,6 +15,7 @@
 #include "sequences/compare_run.h"
 #include "sequences/file_pattern.h"
 #include "sequences/interrupt.h"
+#include "sequences/paper_command.h"
 #include "sequences/progress.h"
 #include "sequences/scene_source.h"
 
@@ -228,6 +229,7 @@ void CompareJob::write(const std::vector<CaseResults>& results,
 }  // namespace
 
 int compare_command(const CompareSettings& settings, const Console& console) {
+  if (!settings.paper.empty()) return paper_command(settings, console);
   return CompareJob(settings, console).run();
 }
 

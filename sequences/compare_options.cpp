@@ -1,13 +1,14 @@
 #include "sequences/compare_options.h"
 
 #include <CLI/CLI.hpp>
+#include <set>
+#include <string>
 
 namespace eigenlight {
 namespace {
 
 void add_what(CLI::App& command, CompareSettings& settings) {
-  command.add_option("scenes", settings.scenes, "Built-in names, scene.json, .gltf, .glb or .obj")
-      ->required();
+  command.add_option("scenes", settings.scenes, "Built-in names, scene.json, .gltf, .glb or .obj");
   command.add_option("-o,--output", settings.directory, "Directory for results and page")
       ->required();
   command.add_option("--methods", settings.methods, "With commas [all of `eigenlight methods`]");
@@ -52,6 +53,26 @@ void add_how(CLI::App& command, CompareSettings& settings) {
   command.add_flag("--json", settings.json, "Print results.json in place of the table");
 }
 
+// Papers come with scenes, methods and sample counts of their own.
+void add_paper(CLI::App& command, CompareSettings& settings) {
+  CLI::Option* paper = command.add_option(
+      "--paper", settings.paper, "In place of scenes: measure again what a paper claims; chen2012");
+  for (CLI::Option* other : command.get_options()) {
+    static const std::set<std::string> kShared{"--help",   "--paper",   "--output", "--size",
+                                               "--frames", "--threads", "--quiet",  "--json"};
+    const std::string name = other->get_name();
+    if (!kShared.contains(name)) paper->excludes(other);
+  }
+  command.parse_complete_callback([&command, &settings] {
+    if (settings.paper.empty()) {
+      if (settings.scenes.empty()) throw CLI::RequiredError("scenes or --paper");
+      return;
+    }
+    if (command.get_option("--size")->count() == 0) settings.size.clear();
+    if (command.get_option("--frames")->count() == 0) settings.frames.clear();
+  });
+}
+
 }  // namespace
 
 const CLI::App* add_compare_command(CLI::App& app, CompareSettings& settings) {
@@ -59,6 +80,7 @@ const CLI::App* add_compare_command(CLI::App& app, CompareSettings& settings) {
       app.add_subcommand("compare", "Error, time and memory of methods on the same noisy frames");
   add_what(*command, settings);
   add_how(*command, settings);
+  add_paper(*command, settings);
   return command;
 }
 

@@ -31,6 +31,7 @@ struct CompareSettings {
   std::vector<std::string> external, external_time;
   std::optional<double> equal_time;  ///< ms a frame
   bool ablate = false;
+  std::string paper;  ///< not empty: rerun it; `size` and `frames` are then empty if not given
   std::string directory;
   int threads = 0;
   bool quiet = false, json = false;
