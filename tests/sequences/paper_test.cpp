@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "sequences/cli.h"
+#include "sequences/paper_chen2012.h"
 #include "sequences/paper_scene.h"
 #include "tests/support/temp_dir.h"
 
@@ -85,6 +86,18 @@ TEST(Paper, OptionsThatDoNotFitAreNamed) {
   fails_with({"--paper", "chen2012", "--spp", "4"}, "--spp");
   fails_with({"cornell", "--paper", "chen2012"}, "--paper");
   EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+// The first basis is of the steady light: both kinds of PCA have to find it.
+TEST(Paper, ChensBasesAreThoseOfBatchPca) {
+  const PaperRun run{{24, 14}, {0, 1, 2, 3, 4, 5, 6, 7}, [](const std::string&) {}};
+  PaperReport report;
+  chen_bases(run, report);
+  ASSERT_EQ(report.claims.size(), 1u);
+  const PageTable& table = report.sections.at(0).tables.at(0);
+  ASSERT_EQ(table.rows.size(), 4u);
+  EXPECT_GT(std::get<double>(table.rows[0].cells[0]), 0.99);
+  for (const TableRow& row : table.rows) EXPECT_LE(std::get<double>(row.cells[0]), 1.0 + 1e-9);
 }
 
 TEST(PaperScene, StandsStillOrFlies) {
