@@ -5,7 +5,7 @@
 
 namespace eigenlight {
 
-/// Chen, Lei and Chang 2012: Tables 1 and 2, Fig. 5, 7, 10 and 15.
+/// Chen, Lei and Chang 2012: Tables 1 and 2, Fig. 7, 10 and 15.
 [[nodiscard]] PaperReport rerun_chen2012(const PaperRun& run);
 
 }  // namespace eigenlight
