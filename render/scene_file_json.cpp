@@ -168,6 +168,9 @@ json parse_file(const std::filesystem::path& path) {
   } catch (const json::parse_error& error) {
     throw std::runtime_error(
         fmt::format("{}: broken JSON at byte {}", short_name(path), error.byte));
+  } catch (const json::out_of_range&) {
+    throw std::runtime_error(
+        fmt::format("{}: broken JSON: a number that double does not hold", short_name(path)));
   }
 }
 
