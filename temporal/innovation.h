@@ -35,8 +35,8 @@ struct InnovationOutputs {
 /// is
 ///   w = (v/n + b^2) / (v/n + b^2 + v/s),   and the new age s/w, at most max(max_age, s).
 /// Without bias, or with N = 1, that is n + s. New pixels start at age s. Unconfirmed pixels (no
-/// usable sample) keep their age. The variance of one frame is a running mean of v over min(n, 16)
-/// frames.
+/// usable sample) keep their age. The variance of one frame is a running mean of v over min(new
+/// age / s, 16) frames: where history is dropped, so is its variance.
 void innovation_tile(const InnovationInputs& in, const InnovationOptions& options, const Tile& tile,
                      const InnovationOutputs& out);
 

@@ -100,7 +100,8 @@ void FinishRow(const InnovationInputs& in, const InnovationOptions& options, con
     const float unconfirmed = age > 0.0f ? age : samples;
     const float lone = smaller(n + s, max_age);
     new_age[i] = confirmed ? (alone ? lone : tested) : unconfirmed;
-    const float step = larger(1.0f / (n + 1.0f), 1.0f / 16.0f);
+    // The memory of the variance is that of the light, but no longer than 16 frames.
+    const float step = larger(s / tested, 1.0f / 16.0f);
     const float moved = variances[i] + step * (variance - variances[i]);
     variances[i] = confirmed && !alone ? moved : variances[i];
   }

@@ -42,8 +42,8 @@ inline Innovation innovation(const InnovationInputs& in, const InnovationOptions
   const double bias = std::max(0.0, mu * mu - options.threshold * standard_error);
   const double history = v / n + bias, fresh = v / s;
   const double w = history + fresh > 0.0 ? history / (history + fresh) : s / (n + s);
-  const double frames = std::min(n, 15.0) + 1.0;
-  return {std::min(s / w, oldest), variance + (v - variance) / frames};
+  const double age = std::min(s / w, oldest);
+  return {age, variance + (v - variance) / std::min(age / s, 16.0)};
 }
 
 }  // namespace eigenlight::reference
