@@ -42,29 +42,12 @@ float FireflyBound::reach(const FireflyInputs& in, int x, int y) const {
   return options_.deviations * std::sqrt(noise + expected * expected);
 }
 
-FireflyBound::Block FireflyBound::count(const FireflyInputs& in, const Planes<3>& light,
-                                        const Plane<float>& residual, const Tile& tile) const {
-  Block block;
-  for (int y = tile.y0; y < tile.y1; ++y) {
-    for (int x = tile.x0; x < tile.x1; ++x) {
-      if (in.confirmed(x, y) > 0.0f) {
-        ++block.confirmed;
-        block.outliers += std::abs(residual(x, y)) > reach(in, x, y) ? 1 : 0;
-      }
-      if (!(in.samples(x, y) > 0.0f)) continue;
-      ++block.usable;
-      block.root += static_cast<double>(std::sqrt(std::abs(luminance(light, x, y))));
-    }
-  }
-  return block;
-}
-
 FireflyBound::Region FireflyBound::region(const Tile& tile) const {
   const int column = tile.index % grid_.columns(), row = tile.index / grid_.columns();
-  Block sum;
+  FireflyBlock sum;
   for (int y = std::max(row - 1, 0); y <= std::min(row + 1, grid_.rows() - 1); ++y) {
     for (int x = std::max(column - 1, 0); x <= std::min(column + 1, grid_.columns() - 1); ++x) {
-      const Block& block = blocks_[static_cast<std::size_t>(y * grid_.columns() + x)];
+      const FireflyBlock& block = blocks_[static_cast<std::size_t>(y * grid_.columns() + x)];
       sum.confirmed += block.confirmed;
       sum.outliers += block.outliers;
       sum.usable += block.usable;
@@ -78,6 +61,8 @@ FireflyBound::Region FireflyBound::region(const Tile& tile) const {
 
 int FireflyBound::bound(const FireflyInputs& in, const Tile& tile, Planes<3>& light,
                         Plane<float>& residual) const {
+  const FireflyBlock& own = blocks_[static_cast<std::size_t>(tile.index)];
+  if (own.outliers == 0 && own.fresh == 0) return 0;
   const Region around = region(tile);
   int bounded = 0;
   for (int y = tile.y0; y < tile.y1; ++y) {
@@ -106,7 +91,8 @@ std::int64_t FireflyBound::process(const FireflyInputs& in, Planes<3>& light,
   const int columns = grid_.columns();
   parallel_for(grid_.rows(), [&](int row) {
     for (int i = row * columns; i < (row + 1) * columns; ++i) {
-      blocks_[static_cast<std::size_t>(i)] = count(in, light, residual, grid_.tile(i));
+      blocks_[static_cast<std::size_t>(i)] =
+          count_fireflies(in, options_.deviations, light, residual, grid_.tile(i));
     }
   });
   parallel_for(grid_.rows(), [&](int row) {

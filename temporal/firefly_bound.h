@@ -29,6 +29,20 @@ struct FireflyInputs {
   const Plane<float>& variance;  ///< v, of one frame's luminance
 };
 
+/// Pixels of a block of 8 x 8.
+struct FireflyBlock {
+  int confirmed = 0;
+  int outliers = 0;   ///< of the confirmed
+  int usable = 0;     ///< with a sample
+  int fresh = 0;      ///< usable, not confirmed
+  double root = 0.0;  ///< sum of sqrt(luminance) of the usable
+};
+
+/// Counts the pixels of a block whose left edge is a multiple of 8.
+[[nodiscard]] FireflyBlock count_fireflies(const FireflyInputs& in, float deviations,
+                                           const Planes<3>& light, const Plane<float>& residual,
+                                           const Tile& block);
+
 /// Bounded influence (Huber 1964). A residual r of luminance, with
 ///   sigma^2 = v (1/s + 1/n) + (0.1 luminance(prediction))^2,
 /// is an outlier beyond `deviations` sigma. Where no more than `share` of the confirmed pixels in
@@ -46,10 +60,6 @@ class FireflyBound {
   std::int64_t process(const FireflyInputs& in, Planes<3>& light, Plane<float>& residual);
 
  private:
-  struct Block {
-    int confirmed = 0, outliers = 0, usable = 0;
-    double root = 0.0;  // sum of sqrt(luminance)
-  };
   /// Of a block and its neighbors.
   struct Region {
     bool is_steady;    // outliers are few
@@ -57,15 +67,13 @@ class FireflyBound {
   };
 
   [[nodiscard]] float reach(const FireflyInputs& in, int x, int y) const;
-  [[nodiscard]] Block count(const FireflyInputs& in, const Planes<3>& light,
-                            const Plane<float>& residual, const Tile& tile) const;
   [[nodiscard]] Region region(const Tile& tile) const;
   [[nodiscard]] int bound(const FireflyInputs& in, const Tile& tile, Planes<3>& light,
                           Plane<float>& residual) const;
 
   FireflyOptions options_;
   TileGrid grid_;  // of blocks
-  std::vector<Block> blocks_;
+  std::vector<FireflyBlock> blocks_;
   std::vector<int> bounded_;  // per row of blocks
 };
 

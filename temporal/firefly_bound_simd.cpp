@@ -1,0 +1,80 @@
+#include "frame/float_traps.h"
+#include "temporal/firefly_bound.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "temporal/firefly_bound_simd.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace eigenlight::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+// Up to eight lanes: a row of a block.
+using D = hn::CappedTag<float, 8>;
+using V = hn::Vec<D>;
+
+V Luminance(V r, V g, V b) {
+  const D d;
+  return hn::MulAdd(hn::Set(d, 0.2126f), r,
+                    hn::MulAdd(hn::Set(d, 0.7152f), g, hn::Mul(hn::Set(d, 0.0722f), b)));
+}
+
+// Squared luminance that the residual of a confirmed pixel is expected to have.
+V Expected(V used, V variance, V samples, V age, V prediction) {
+  const D d;
+  const V one = hn::Set(d, 1.0f);
+  const auto mask = hn::Gt(used, hn::Zero(d));
+  const V s = hn::IfThenElse(mask, samples, one), n = hn::IfThenElse(mask, age, one);
+  const V light = hn::Mul(hn::Set(d, 0.1f), prediction);
+  return hn::MulAdd(light, light, hn::Mul(variance, hn::Add(hn::Div(one, s), hn::Div(one, n))));
+}
+
+FireflyBlock CountFireflies(const FireflyInputs& in, float deviations, const Planes<3>& light,
+                            const Plane<float>& residual, const Tile& block) {
+  const D d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  const V zero = hn::Zero(d), square = hn::Set(d, deviations * deviations);
+  FireflyBlock counts;
+  for (int y = block.y0; y < block.y1; ++y) {
+    for (int x = block.x0; x < block.x1; x += lanes) {
+      const auto load = [&](const Plane<float>& plane) { return hn::LoadU(d, plane.row(y) + x); };
+      const auto inside = hn::FirstN(d, static_cast<std::size_t>(block.x1 - x));
+      const V known = hn::IfThenElseZero(inside, load(in.confirmed));
+      const V samples = hn::IfThenElseZero(inside, load(in.samples));
+      const auto confirmed = hn::Gt(known, zero), usable = hn::Gt(samples, zero);
+      const V prediction =
+          Luminance(load(in.prediction[0]), load(in.prediction[1]), load(in.prediction[2]));
+      const V expected = Expected(known, load(in.variance), samples, load(in.age), prediction);
+      const V r = load(residual);
+      const auto outlier = hn::And(confirmed, hn::Gt(hn::Mul(r, r), hn::Mul(square, expected)));
+      const V shown = hn::Abs(Luminance(load(light[0]), load(light[1]), load(light[2])));
+      const V root = hn::Sqrt(hn::IfThenElseZero(usable, shown));
+      counts.confirmed += static_cast<int>(hn::CountTrue(d, confirmed));
+      counts.outliers += static_cast<int>(hn::CountTrue(d, outlier));
+      counts.usable += static_cast<int>(hn::CountTrue(d, usable));
+      counts.fresh += static_cast<int>(hn::CountTrue(d, hn::AndNot(confirmed, usable)));
+      counts.root += static_cast<double>(hn::GetLane(hn::SumOfLanes(d, root)));
+    }
+  }
+  return counts;
+}
+
+}  // namespace
+}  // namespace eigenlight::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace eigenlight {
+
+HWY_EXPORT(CountFireflies);
+
+FireflyBlock count_fireflies(const FireflyInputs& in, float deviations, const Planes<3>& light,
+                             const Plane<float>& residual, const Tile& block) {
+  const FloatTrapsOff lanes_behind_masks_may_hold_anything;
+  return HWY_DYNAMIC_DISPATCH(CountFireflies)(in, deviations, light, residual, block);
+}
+
+}  // namespace eigenlight
+#endif
