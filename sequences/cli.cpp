@@ -23,6 +23,8 @@ constexpr int kFailed = 1;
 constexpr int kBadUsage = 2;
 
 void add_picture_options(CLI::App& command, RenderSettings& settings) {
+  // Scripts put a user's options behind their own.
+  command.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   command
       .add_option("scene", settings.scene,
                   "Built-in name (see `eigenlight scenes`), scene.json, .gltf, .glb or .obj")

@@ -71,6 +71,15 @@ TEST_F(CliTest, ARunLeavesFramesLogsAndPage) {
   EXPECT_EQ(std::get<std::string>(*reader.attribute("eigenlight.scene")), "cornell");
 }
 
+TEST_F(CliTest, OfAnOptionGivenTwiceTheLastCounts) {
+  EXPECT_EQ(
+      render("a", {"-q", "--frames", "0-3", "--spp", "3", "--frames", "7", "--spp", "1"}).status,
+      0);
+  EXPECT_TRUE(std::filesystem::exists(dir_ / "a/frame.0007.exr"));
+  EXPECT_FALSE(std::filesystem::exists(dir_ / "a/frame.0000.exr"));
+  EXPECT_EQ(nlohmann::json::parse(bytes("a/run.json"))["spp"], 1);
+}
+
 TEST_F(CliTest, BitsDependOnNeitherThreadsNorOtherFrames) {
   EXPECT_EQ(render("one", {"--frames", "0-2", "--threads", "1"}).status, 0);
   EXPECT_EQ(render("two", {"--frames", "0-2", "--threads", "2"}).status, 0);
