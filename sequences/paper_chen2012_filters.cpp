@@ -69,7 +69,7 @@ void claim_flicker(const std::vector<PlotSeries>& series, PaperReport& report) {
                            samples_needed(series[4]), verdict(series[4].points[2].y >= kUnseen)});
   const double best = std::min(series[3].points.front().y, series[4].points.front().y);
   report.claims.push_back({"Fig. 7", "at 3 rays less flicker than bilateral filters", "less",
-                           fmt::format("{:.2g} of the better one's", chen / best),
+                           fmt::format("{:.2g} times the better one's", chen / best),
                            verdict(chen < best)});
 }
 
