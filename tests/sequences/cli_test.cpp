@@ -14,6 +14,7 @@
 #include "frame/tiles.h"
 #include "sequences/atomic_file.h"
 #include "sequences/exr_io.h"
+#include "tests/support/command_line.h"
 #include "tests/support/compare.h"
 #include "tests/support/temp_dir.h"
 
@@ -24,21 +25,6 @@ using testing::AllOf;
 using testing::EndsWith;
 using testing::HasSubstr;
 using testing::StartsWith;
-
-struct Outcome {
-  int status = 0;
-  std::string out, err;
-};
-
-Outcome call(std::vector<std::string> words) {
-  words.insert(words.begin(), "eigenlight");
-  std::vector<const char*> args;
-  for (const std::string& word : words) args.push_back(word.c_str());
-  std::ostringstream out, err;
-  const int status = run_command_line(args, {out, err, false, ""});
-  set_thread_count(0);
-  return {status, out.str(), err.str()};
-}
 
 class CliTest : public testing::Test {
  protected:

@@ -15,6 +15,7 @@
 #include "sequences/cli.h"
 #include "sequences/evaluate.h"
 #include "sequences/exr_io.h"
+#include "tests/support/command_line.h"
 #include "tests/support/compare.h"
 #include "tests/support/temp_dir.h"
 
@@ -26,21 +27,6 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 using Json = nlohmann::json;
-
-struct Outcome {
-  int status = 0;
-  std::string out, err;
-};
-
-Outcome call(std::vector<std::string> words) {
-  words.insert(words.begin(), "eigenlight");
-  std::vector<const char*> args;
-  for (const std::string& word : words) args.push_back(word.c_str());
-  std::ostringstream out, err;
-  const int status = run_command_line(args, {out, err, false, ""});
-  set_thread_count(0);
-  return {status, out.str(), err.str()};
-}
 
 class CompareCommand : public testing::Test {
  protected:

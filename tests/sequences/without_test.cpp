@@ -13,6 +13,7 @@
 #include "sequences/exr_io.h"
 #include "sequences/split_list.h"
 #include "temporal/denoiser.h"
+#include "tests/support/command_line.h"
 #include "tests/support/temp_dir.h"
 
 namespace eigenlight {
@@ -20,21 +21,6 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-struct Outcome {
-  int status = 0;
-  std::string out, err;
-};
-
-Outcome call(std::vector<std::string> words) {
-  words.insert(words.begin(), "eigenlight");
-  std::vector<const char*> args;
-  for (const std::string& word : words) args.push_back(word.c_str());
-  std::ostringstream out, err;
-  const int status = run_command_line(args, {out, err, false, ""});
-  set_thread_count(0);
-  return {status, out.str(), err.str()};
-}
 
 const Method* method_with_parts() {
   for (const Method& method : methods()) {
