@@ -69,12 +69,22 @@ void Atrous::run_pass(const Frame& guides, int pass, const std::function<bool(co
                       Planes<3>& color, Plane<float>& variance) {
   const AtrousPass work{guides,   options_,       1 << pass,        color,
                         variance, scratch_color_, scratch_variance_};
-  for_each_tile(grid_, [&](const Tile& tile) {
-    if (wanted(tile)) {
-      atrous_tile(work, tile);
-    } else {
-      copy_tile(work, tile);
+  for_each_strip(grid_, [&](const Strip& strip) {
+    // Neighbors that are wanted alike are filtered as one.
+    Tile area = grid_.tile(strip.area.index);
+    bool filtered = wanted(area);
+    const auto run = [&] { filtered ? atrous_tile(work, area) : copy_tile(work, area); };
+    for (int i = 1; i < strip.tiles; ++i) {
+      const Tile tile = grid_.tile(strip.area.index + i);
+      const bool next = wanted(tile);
+      if (next != filtered) {
+        run();
+        area = tile;
+      }
+      area.x1 = tile.x1;
+      filtered = next;
     }
+    run();
   });
   std::swap(color, scratch_color_);
   std::swap(variance, scratch_variance_);

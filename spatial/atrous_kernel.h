@@ -1,12 +1,13 @@
 // One pass of the a-trous filter over one tile; see atrous.h.
 #pragma once
 
+#include "frame/strips.h"
 #include "spatial/atrous.h"
 
 namespace eigenlight {
 
 /// Widest tile of the kernel.
-inline constexpr int kAtrousWidth = 64;
+inline constexpr int kAtrousWidth = kStripWidth;
 
 struct AtrousPass {
   const Frame& guides;

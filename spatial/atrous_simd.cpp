@@ -7,7 +7,6 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "spatial/atrous_simd.cpp"
-#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -78,7 +77,7 @@ struct Center {
   VF sum[3], weight, variance;
 };
 
-Center LoadCenter(const AtrousPass& pass, int x, int y, VF smooth_variance) {
+HWY_INLINE Center LoadCenter(const AtrousPass& pass, int x, int y, VF smooth_variance) {
   const F d;
   const Camera& camera = pass.guides.camera;
   const glm::mat3& to_view = camera.world_to_view;
@@ -124,23 +123,36 @@ Center LoadCenter(const AtrousPass& pass, int x, int y, VF smooth_variance) {
 // The planes of one row of taps.
 struct TapRow {
   const float *color[3], *variance, *normal[3], *depth;
+  int line, dy;     // which row of the image, and of the kernel
+  float kernel[5];  // h of its taps
 
-  TapRow(const AtrousPass& pass, int y)
+  TapRow() = default;
+  TapRow(const AtrousPass& pass, int y, int place)
       : color{pass.color[0].row(y), pass.color[1].row(y), pass.color[2].row(y)},
         variance(pass.variance.row(y)),
         normal{pass.guides.surface.normal[0].row(y), pass.guides.surface.normal[1].row(y),
                pass.guides.surface.normal[2].row(y)},
-        depth(pass.guides.surface.depth.row(y)) {}
+        depth(pass.guides.surface.depth.row(y)),
+        line(y),
+        dy(place) {
+    const int radius = pass.options.radius;
+    for (int j = -radius; j <= radius; ++j) kernel[j + radius] = Weight(pass, j, place);
+  }
 };
 
-// Adds the taps that `load` fetches, at column `x` and row `y`, to the center.
+// N . ray at column 0 of a row.
+HWY_INLINE VF AlongRow(const TapRow& row, const Center& at) {
+  return hn::MulAdd(at.plane_y, hn::Set(F(), static_cast<float>(row.line)), at.plane_c);
+}
+
+// The weight of the taps that `load` fetches, at column `x`, but for the kernel.
 template <typename Load>
-HWY_INLINE void AddTap(const TapRow& row, VF x, VF y, VF kernel, Load load, Center& at) {
+HWY_INLINE VF TapWeight(const TapRow& row, VF x, VF along_row, Load load, const Center& at) {
   const F d;
-  const VF along = hn::MulAdd(at.plane_x, x, hn::MulAdd(at.plane_y, y, at.plane_c));
+  const VF along = hn::MulAdd(at.plane_x, x, along_row);
   const VF plane = hn::Abs(hn::MulSub(load(row.depth), along, at.plane));
-  const VF r = load(row.color[0]), g = load(row.color[1]), b = load(row.color[2]);
-  const VF light = hn::Abs(hn::Sub(Luminance(r, g, b), at.luminance));
+  const VF tap = Luminance(load(row.color[0]), load(row.color[1]), load(row.color[2]));
+  const VF light = hn::Abs(hn::Sub(tap, at.luminance));
   const VF decay = hn::NegMulAdd(plane, at.plane_scale,
                                  hn::NegMulAdd(light, at.luminance_scale, hn::Set(d, 1.0f)));
   VF cosine = hn::Mul(at.normal[0], load(row.normal[0]));
@@ -155,10 +167,13 @@ HWY_INLINE void AddTap(const TapRow& row, VF x, VF y, VF kernel, Load load, Cent
   for (int s = 0; s < 3; ++s) cosine = hn::Mul(cosine, cosine);
   VF w = hn::Mul(cosine, decay);
   for (int s = 0; s < 3; ++s) w = hn::Mul(w, w);
-  w = hn::IfThenElseZero(valid, hn::Mul(w, kernel));
-  at.sum[0] = hn::MulAdd(w, r, at.sum[0]);
-  at.sum[1] = hn::MulAdd(w, g, at.sum[1]);
-  at.sum[2] = hn::MulAdd(w, b, at.sum[2]);
+  return hn::IfThenElseZero(valid, w);
+}
+
+// Adds those taps to the center with weight w.
+template <typename Load>
+HWY_INLINE void AddTap(const TapRow& row, VF w, Load load, Center& at) {
+  for (int c = 0; c < 3; ++c) at.sum[c] = hn::MulAdd(w, load(row.color[c]), at.sum[c]);
   at.weight = hn::Add(at.weight, w);
   at.variance = hn::MulAdd(hn::Mul(w, w), load(row.variance), at.variance);
 }
@@ -166,12 +181,13 @@ HWY_INLINE void AddTap(const TapRow& row, VF x, VF y, VF kernel, Load load, Cent
 // A tap row for the pixels x .. x + lanes, of which some taps lie outside the image: kernel 0
 // there.
 template <int kRadius>
-void AddEdgeRow(const AtrousPass& pass, const TapRow& row, int x, int dy, int y, Center& at) {
+void AddEdgeRow(const AtrousPass& pass, const TapRow& row, int x, Center& at) {
   const F d;
+  const VF along = AlongRow(row, at);
   const int lanes = static_cast<int>(hn::Lanes(d)), last = pass.variance.width() - 1;
   alignas(64) float values[64];
   for (int j = -kRadius; j <= kRadius; ++j) {
-    if (j == 0 && dy == 0) continue;
+    if (j == 0 && row.dy == 0) continue;
     const int first = x + j * pass.step;
     const auto load = [&](const float* source) {
       for (int l = 0; l < lanes; ++l) values[l] = source[std::clamp(first + l, 0, last)];
@@ -180,27 +196,35 @@ void AddEdgeRow(const AtrousPass& pass, const TapRow& row, int x, int dy, int y,
     const VF column = hn::Iota(d, static_cast<float>(first));
     const auto inside =
         hn::And(hn::Ge(column, hn::Zero(d)), hn::Le(column, hn::Set(d, static_cast<float>(last))));
-    const VF kernel = hn::IfThenElseZero(inside, hn::Set(d, Weight(pass, j, dy)));
-    AddTap(row, column, hn::Set(d, static_cast<float>(y)), kernel, load, at);
+    const VF kernel = hn::IfThenElseZero(inside, hn::Set(d, row.kernel[j + kRadius]));
+    AddTap(row, hn::Mul(kernel, TapWeight(row, column, along, load, at)), load, at);
   }
 }
 
+// All weights first: what weights and sums need does not fit 16 registers at once.
 template <int kRadius>
-HWY_INLINE void AddRow(const AtrousPass& pass, const TapRow& row, int x, int dy, int y,
-                       Center& at) {
+HWY_INLINE void AddRow(const TapRow& row, int step, int x, Center& at) {
   const F d;
+  const VF along = AlongRow(row, at);
+  const auto loader = [&](int j) {
+    return [first = x + j * step](const float* source) { return hn::LoadU(F(), source + first); };
+  };
+  VF weight[2 * kRadius + 1];
   for (int j = -kRadius; j <= kRadius; ++j) {
-    if (j == 0 && dy == 0) continue;
-    const int first = x + j * pass.step;
-    const auto load = [&](const float* source) { return hn::LoadU(d, source + first); };
-    AddTap(row, hn::Iota(d, static_cast<float>(first)), hn::Set(d, static_cast<float>(y)),
-           hn::Set(d, Weight(pass, j, dy)), load, at);
+    if (j == 0 && row.dy == 0) continue;
+    const VF column = hn::Iota(d, static_cast<float>(x + j * step));
+    weight[j + kRadius] =
+        hn::Mul(hn::Set(d, row.kernel[j + kRadius]), TapWeight(row, column, along, loader(j), at));
+  }
+  for (int j = -kRadius; j <= kRadius; ++j) {
+    if (j == 0 && row.dy == 0) continue;
+    AddTap(row, weight[j + kRadius], loader(j), at);
   }
 }
 
 // Writes the lanes whose pixels show a surface; the others keep their value. Lanes beyond the row
 // write its padding.
-void StoreCenter(const AtrousPass& pass, const Center& at, int x, int y) {
+HWY_INLINE void StoreCenter(const AtrousPass& pass, const Center& at, int x, int y) {
   const F d;
   const hn::RebindToUnsigned<F> du;
   const auto id = hn::LoadU(du, pass.guides.surface.id.row(y) + x);
@@ -215,15 +239,15 @@ void StoreCenter(const AtrousPass& pass, const Center& at, int x, int y) {
   store(hn::Mul(at.variance, hn::Mul(scale, scale)), pass.variance, pass.out_variance);
 }
 
-// Rows of a tile are too short for the hardware to foresee the next one that taps will reach.
-void Prefetch(const AtrousPass& pass, const Tile& tile, int y) {
-  constexpr int kStep = static_cast<int>(Plane<float>::kLine / sizeof(float));
-  const GBuffer& surface = pass.guides.surface;
-  for (const Plane<float>* plane :
-       {&pass.color[0], &pass.color[1], &pass.color[2], &pass.variance, &surface.normal[0],
-        &surface.normal[1], &surface.normal[2], &surface.depth}) {
-    for (int x = tile.x0; x < tile.x1; x += kStep) hwy::Prefetch(plane->row(y) + x);
+// The rows of taps inside the image. Returns how many.
+template <int kRadius>
+int FindRows(const AtrousPass& pass, int y, TapRow (&rows)[2 * kRadius + 1]) {
+  int count = 0;
+  for (int dy = -kRadius; dy <= kRadius; ++dy) {
+    const int ty = y + dy * pass.step;
+    if (ty >= 0 && ty < pass.variance.height()) rows[count++] = TapRow(pass, ty, dy);
   }
+  return count;
 }
 
 template <int kRadius>
@@ -233,19 +257,17 @@ void FilterTile(const AtrousPass& pass, const Tile& tile) {
   const Extent extent = pass.variance.extent();
   alignas(64) Line smooth_variance = {};
   for (int y = tile.y0; y < tile.y1; ++y) {
-    if (y + reach + 1 < extent.height) Prefetch(pass, tile, y + reach + 1);
     SmoothVariance(pass.variance, tile.x0, tile.x1 - tile.x0, y, smooth_variance);
+    TapRow rows[2 * kRadius + 1];
+    const int used = FindRows<kRadius>(pass, y, rows);
     for (int x = tile.x0; x < tile.x1; x += lanes) {
       Center at = LoadCenter(pass, x, y, hn::Load(d, smooth_variance + (x - tile.x0)));
       const bool inside = x - reach >= 0 && x + lanes + reach <= extent.width;
-      for (int dy = -kRadius; dy <= kRadius; ++dy) {
-        const int ty = y + dy * pass.step;
-        if (ty < 0 || ty >= extent.height) continue;
-        const TapRow row(pass, ty);
+      for (int r = 0; r < used; ++r) {
         if (inside) {
-          AddRow<kRadius>(pass, row, x, dy, ty, at);
+          AddRow<kRadius>(rows[r], pass.step, x, at);
         } else {
-          AddEdgeRow<kRadius>(pass, row, x, dy, ty, at);
+          AddEdgeRow<kRadius>(pass, rows[r], x, at);
         }
       }
       StoreCenter(pass, at, x, y);

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "frame/guides.h"
+#include "frame/strips.h"
 #include "reproject/warp.h"
+#include "temporal/guides.h"
 #include "temporal/predict.h"
 #include "temporal/signal.h"
 #include "temporal/stage_clock.h"
@@ -75,9 +76,9 @@ const Planes<3>* EigenDenoiser::step(FrameSource& source) {
   report_[Stage::kReproject] = clock.lap();
   const std::int64_t planned = budget_.process(frame_, old_age_, extra_).samples;
   report_[Stage::kBudget] = clock.lap();
-  resample(source, planned);
+  const bool resampled = resample(source, planned);
   report_[Stage::kResample] = clock.lap();
-  project();
+  project(resampled);
   report_[Stage::kProject] = clock.lap();
   update();
   report_[Stage::kUpdate] = clock.lap();
@@ -96,19 +97,22 @@ void EigenDenoiser::start_frame(const StageTime& time) {
   report_.frame = frame_.index;
   report_.cut = !surfaces_.is_followed_by(frame_);
   report_[Stage::kSource] = time;
-  for_each_tile(tiles_, [&](const Tile& tile) {
-    TileCount& count = counts_[static_cast<std::size_t>(tile.index)];
-    count = {};
-    for (int y = tile.y0; y < tile.y1; ++y) {
-      for (int x = tile.x0; x < tile.x1; ++x) {
-        if (frame_.surface.id(x, y) == 0) continue;
-        ++count.surface;
-        if (has_usable_guides(frame_.surface, x, y)) continue;
-        ++count.unguided;
-        drop_guides(frame_, x, y);
-      }
-    }
+  std::fill(counts_.begin(), counts_.end(), TileCount{});
+  for_each_segment(tiles_, [&](const Tile& row) {
+    const GuideCounts found = count_guides(frame_.surface, row);
+    TileCount& count = counts_[static_cast<std::size_t>(row.index)];
+    count.surface += found.surface;
+    count.unguided += found.surface - found.usable;
+    if (found.usable < found.surface) drop_unusable(row);
   });
+}
+
+void EigenDenoiser::drop_unusable(const Tile& row) {
+  for (int x = row.x0; x < row.x1; ++x) {
+    if (frame_.surface.id(x, row.y0) != 0 && !has_usable_guides(frame_.surface, x, row.y0)) {
+      drop_guides(frame_, x, row.y0);
+    }
+  }
 }
 
 bool EigenDenoiser::is_empty(const Tile& tile) const {
@@ -130,47 +134,51 @@ void EigenDenoiser::warp_history() {
     std::swap(bases_, warped_bases_);
     std::swap(variance_, warped_variance_);
   }
-  for_each_tile(tiles_, [&](const Tile& tile) {
-    if (moving) warp_tile(tile);
-    for (int y = tile.y0; y < tile.y1; ++y) {
-      for (int x = tile.x0; x < tile.x1; ++x) old_age_(x, y) = warped_bases_.age(x, y);
-    }
-    if (report_.cut || is_empty(tile)) return;
-    accumulate_tile({warped_bases_, frame_, warped_variance_, memory_.active()}, tile,
-                    sums_[static_cast<std::size_t>(tile.index)]);
+  for_each_segment(tiles_, [&](const Tile& row) {
+    if (moving) warp_row(row);
+    for (int x = row.x0; x < row.x1; ++x) old_age_(x, row.y0) = warped_bases_.age(x, row.y0);
+    if (report_.cut || is_empty(row)) return;
+    accumulate_tile({warped_bases_, frame_, warped_variance_, memory_.active()}, row,
+                    sums_[static_cast<std::size_t>(row.index)]);
   });
   std::swap(variance_, warped_variance_);
   if (still) report_.skipped_warp = static_cast<std::int64_t>(extent_.pixels());
 }
 
-void EigenDenoiser::warp_tile(const Tile& tile) {
-  if (is_empty(tile)) {
-    for (int y = tile.y0; y < tile.y1; ++y) {
-      std::fill(warped_bases_.pixel(tile.x0, y),
-                warped_bases_.pixel(tile.x1 - 1, y) + warped_bases_.pixel_floats(), 0.0f);
-    }
+void EigenDenoiser::warp_row(const Tile& row) {
+  if (is_empty(row)) {
+    std::fill(warped_bases_.pixel(row.x0, row.y0),
+              warped_bases_.pixel(row.x1 - 1, row.y0) + warped_bases_.pixel_floats(), 0.0f);
     return;
   }
   TapSegment taps;
-  const PreviousSurface previous = surfaces_.previous();
-  for (int y = tile.y0; y < tile.y1; ++y) {
-    const Tile row{tile.x0, y, tile.x1, y + 1, tile.index};
-    compute_taps(frame_, previous, options_.taps, row, taps);
-    warp_bases(bases_, taps, row, warped_bases_);
-    warp_plane(variance_, taps, row, warped_variance_);
-  }
+  compute_taps(frame_, surfaces_.previous(), options_.taps, row, taps);
+  warp_bases(bases_, taps, row, warped_bases_);
+  warp_plane(variance_, taps, row, warped_variance_);
 }
 
-void EigenDenoiser::resample(FrameSource& source, std::int64_t planned) {
+bool EigenDenoiser::resample(FrameSource& source, std::int64_t planned) {
   const bool resampled = planned > 0 && source.resample(extra_, frame_, extra_mean_);
   if (resampled) report_.extra_samples = planned;
-  for_each_tile(tiles_, [&](const Tile& tile) {
-    const SignalCounts found = merge_samples(
-        {frame_, resampled ? &extra_ : nullptr, resampled ? &extra_mean_ : nullptr, old_age_}, tile,
-        {light_, samples_});
-    TileCount& count = counts_[static_cast<std::size_t>(tile.index)];
-    count.fresh = found.fresh;
-    count.non_finite = found.non_finite;
+  return resampled;
+}
+
+// What history expects of this frame's samples. Strip by strip: light and prediction are still in
+// the cache when they are compared.
+void EigenDenoiser::predict(bool resampled) {
+  const SignalInputs signal{frame_, resampled ? &extra_ : nullptr,
+                            resampled ? &extra_mean_ : nullptr, old_age_};
+  for_each_strip(tiles_, [&](const Strip& strip) {
+    for_each_segment(tiles_, strip, [&](const Tile& row) {
+      const SignalCounts found = merge_samples(signal, row, {light_, samples_});
+      TileCount& count = counts_[static_cast<std::size_t>(row.index)];
+      count.fresh += found.fresh;
+      count.non_finite += found.non_finite;
+      predict_tile(warped_bases_, coefficients_, light_, row,
+                   {prediction_, residual_, confirmed_, old_age_});
+    });
+    fireflies_.count({prediction_, confirmed_, old_age_, samples_, variance_}, light_, residual_,
+                     strip.area);
   });
   for (const TileCount& count : counts_) {
     report_.surface_pixels += count.surface;
@@ -180,17 +188,14 @@ void EigenDenoiser::resample(FrameSource& source, std::int64_t planned) {
   }
 }
 
-void EigenDenoiser::project() {
+void EigenDenoiser::project(bool resampled) {
   if (options_.project) {
     solve_coefficients(sums_, memory_.expected(), options_.shrink, coefficients_);
   }
   coefficients_.set_used(memory_.active());
-  for_each_tile(tiles_, [&](const Tile& tile) {
-    predict_tile(warped_bases_, coefficients_, light_, tile,
-                 {prediction_, residual_, confirmed_, old_age_});
-  });
-  report_.bounded_pixels = fireflies_.process(
-      {prediction_, confirmed_, old_age_, samples_, variance_}, light_, residual_);
+  predict(resampled);
+  report_.bounded_pixels =
+      fireflies_.bound({prediction_, confirmed_, old_age_, samples_, variance_}, light_, residual_);
   const CorrectionInputs inputs{frame_, light_, confirmed_, old_age_, samples_, variance_};
   const double corrected =
       options_.correct ? correction_.process(inputs, prediction_, residual_) : 0.0;
@@ -198,7 +203,10 @@ void EigenDenoiser::project() {
       options_.correct ? correction_.skipped() : static_cast<std::int64_t>(extent_.pixels());
   memory_.advance(coefficients_, learning_);
   newborn_ = corrected > options_.birth ? memory_.free_slot() : 0;
+  report_rank();
+}
 
+void EigenDenoiser::report_rank() {
   double rank = 0.0, tiles = 0.0;
   for (int i = 0; i < tiles_.count(); ++i) {
     if (counts_[static_cast<std::size_t>(i)].surface == 0) {
@@ -214,26 +222,33 @@ void EigenDenoiser::project() {
 }
 
 void EigenDenoiser::update() {
-  const int active = memory_.active();
-  bases_.reshape(std::max(active, newborn_ + 1));
-  for_each_tile(tiles_, [&](const Tile& tile) {
-    if (is_empty(tile)) {
-      clear_tile(tile);
-      return;
-    }
-    innovation_tile({residual_, confirmed_, old_age_, samples_}, options_.innovation, tile,
+  bases_.reshape(std::max(memory_.active(), newborn_ + 1));
+  for_each_strip(tiles_, [&](const Strip& strip) {
+    innovation_tile({residual_, confirmed_, old_age_, samples_}, options_.innovation, strip.area,
                     {new_age_, variance_});
-    fresh_variance(frame_, samples_, old_age_, tile, variance_);
-    const Planes<3>* correction =
-        correction_.is_open(tile.index) ? &correction_.correction() : nullptr;
-    update_tile({coefficients_, learning_, prediction_, correction, light_, samples_, old_age_,
-                 new_age_, active, newborn_},
-                tile, warped_bases_, {bases_, output_});
-    estimate_variance({frame_.surface.id, new_age_, variance_, options_.young}, tile,
-                      {output_variance_, young_});
+    for (int i = strip.area.index; i < strip.area.index + strip.tiles; ++i) {
+      if (is_empty(tiles_.tile(i))) {
+        clear_tile(tiles_.tile(i));
+      } else {
+        fresh_variance(frame_, samples_, old_age_, tiles_.tile(i), variance_);
+      }
+    }
+    for_each_segment(tiles_, strip, [&](const Tile& row) {
+      if (!is_empty(row)) update_row(row);
+    });
   });
   if (newborn_ > 0) memory_.born(newborn_);
   retire_bases();
+}
+
+void EigenDenoiser::update_row(const Tile& row) {
+  const Planes<3>* correction =
+      correction_.is_open(row.index) ? &correction_.correction() : nullptr;
+  update_tile({coefficients_, learning_, prediction_, correction, light_, samples_, old_age_,
+               new_age_, memory_.active(), newborn_},
+              row, warped_bases_, {bases_, output_});
+  estimate_variance({frame_.surface.id, new_age_, variance_, options_.young}, row,
+                    {output_variance_, young_});
 }
 
 // What an earlier frame showed there is gone.

@@ -61,13 +61,17 @@ class EigenDenoiser final : public Denoiser {
 
  private:
   void start_frame(const StageTime& time);
+  void drop_unusable(const Tile& row);
   [[nodiscard]] bool is_empty(const Tile& tile) const;
   void warp_history();
-  void warp_tile(const Tile& tile);
-  void resample(FrameSource& source, std::int64_t planned);
-  void project();
+  void warp_row(const Tile& row);
+  [[nodiscard]] bool resample(FrameSource& source, std::int64_t planned);
+  void project(bool resampled);
+  void predict(bool resampled);
+  void report_rank();
   void retire_bases();
   void update();
+  void update_row(const Tile& row);
   void clear_tile(const Tile& tile);
   void filter();
   void fill_young();

@@ -59,8 +59,8 @@ FireflyBound::Region FireflyBound::region(const Tile& tile) const {
           options_.times * static_cast<float>(mean * mean)};
 }
 
-int FireflyBound::bound(const FireflyInputs& in, const Tile& tile, Planes<3>& light,
-                        Plane<float>& residual) const {
+int FireflyBound::bound_block(const FireflyInputs& in, const Tile& tile, Planes<3>& light,
+                              Plane<float>& residual) const {
   const FireflyBlock& own = blocks_[static_cast<std::size_t>(tile.index)];
   if (own.outliers == 0 && own.fresh == 0) return 0;
   const Region around = region(tile);
@@ -86,19 +86,25 @@ int FireflyBound::bound(const FireflyInputs& in, const Tile& tile, Planes<3>& li
   return bounded;
 }
 
-std::int64_t FireflyBound::process(const FireflyInputs& in, Planes<3>& light,
-                                   Plane<float>& residual) {
-  const int columns = grid_.columns();
-  parallel_for(grid_.rows(), [&](int row) {
-    for (int i = row * columns; i < (row + 1) * columns; ++i) {
-      blocks_[static_cast<std::size_t>(i)] =
-          count_fireflies(in, options_.deviations, light, residual, grid_.tile(i));
+void FireflyBound::count(const FireflyInputs& in, const Planes<3>& light,
+                         const Plane<float>& residual, const Tile& area) {
+  EL_DCHECK(area.x0 % kBlock == 0 && area.y0 % kBlock == 0);
+  for (int y = area.y0; y < area.y1; y += kBlock) {
+    for (int x = area.x0; x < area.x1; x += kBlock) {
+      const int index = y / kBlock * grid_.columns() + x / kBlock;
+      blocks_[static_cast<std::size_t>(index)] =
+          count_fireflies(in, options_.deviations, light, residual, grid_.tile(index));
     }
-  });
+  }
+}
+
+std::int64_t FireflyBound::bound(const FireflyInputs& in, Planes<3>& light,
+                                 Plane<float>& residual) {
+  const int columns = grid_.columns();
   parallel_for(grid_.rows(), [&](int row) {
     int bounded = 0;
     for (int i = row * columns; i < (row + 1) * columns; ++i) {
-      bounded += bound(in, grid_.tile(i), light, residual);
+      bounded += bound_block(in, grid_.tile(i), light, residual);
     }
     bounded_[static_cast<std::size_t>(row)] = bounded;
   });

@@ -56,8 +56,12 @@ class FireflyBound {
   /// Throws std::invalid_argument on a bad size or option.
   FireflyBound(Extent extent, const FireflyOptions& options);
 
+  /// Counts the pixels of `area`, whose edges are multiples of 8 or those of the image. To be
+  /// called for all of the image, in any order and on any thread, before bound().
+  void count(const FireflyInputs& in, const Planes<3>& light, const Plane<float>& residual,
+             const Tile& area);
   /// Changes `light` and `residual` (luminance of light - prediction). Returns how many pixels.
-  std::int64_t process(const FireflyInputs& in, Planes<3>& light, Plane<float>& residual);
+  std::int64_t bound(const FireflyInputs& in, Planes<3>& light, Plane<float>& residual);
 
  private:
   /// Of a block and its neighbors.
@@ -68,8 +72,8 @@ class FireflyBound {
 
   [[nodiscard]] float reach(const FireflyInputs& in, int x, int y) const;
   [[nodiscard]] Region region(const Tile& tile) const;
-  [[nodiscard]] int bound(const FireflyInputs& in, const Tile& tile, Planes<3>& light,
-                          Plane<float>& residual) const;
+  [[nodiscard]] int bound_block(const FireflyInputs& in, const Tile& tile, Planes<3>& light,
+                                Plane<float>& residual) const;
 
   FireflyOptions options_;
   TileGrid grid_;  // of blocks

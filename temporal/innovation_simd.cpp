@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "reproject/taps.h"
+#include "frame/strips.h"
 #include "temporal/innovation.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -17,12 +17,14 @@ using F = hn::ScalableTag<float>;
 
 constexpr int kRadius = 4;
 constexpr int kWindow = 2 * kRadius + 1;
-// A row of a tile, what the window reaches on both sides, and what whole vectors read beyond.
-constexpr int kWidth = kSegment + 2 * kRadius + 64;
+// Pixels of a row at once: nine rows of their sums (14 kB) stay in the first-level cache.
+constexpr int kPart = 128;
+// A row of them, what the window reaches on both sides, and what whole vectors read beyond.
+constexpr int kWidth = kPart + 2 * kRadius + 64;
 
 // Sums of count, e and e^2: over a row of the window, then over the window.
 struct Sums {
-  alignas(64) float count[kSegment], mean[kSegment], square[kSegment];
+  alignas(64) float count[kPart], mean[kPart], square[kPart];
 };
 
 // Nine neighbors in four additions: sums of two, of four, of eight, and the ninth. Overwrites the
@@ -124,8 +126,8 @@ void AddRows(const Sums* const (&rows)[kWindow], int used, int count, Sums& wind
   }
 }
 
-void InnovationTile(const InnovationInputs& in, const InnovationOptions& options, const Tile& tile,
-                    const InnovationOutputs& out) {
+void FilterPart(const InnovationInputs& in, const InnovationOptions& options, const Tile& tile,
+                const InnovationOutputs& out) {
   // A ring of row sums: each row of the window is summed once.
   Sums ring[kWindow];
   const int height = in.residual.height();
@@ -146,6 +148,13 @@ void InnovationTile(const InnovationInputs& in, const InnovationOptions& options
   }
 }
 
+void InnovationTile(const InnovationInputs& in, const InnovationOptions& options, const Tile& tile,
+                    const InnovationOutputs& out) {
+  for (int x = tile.x0; x < tile.x1; x += kPart) {
+    FilterPart(in, options, {x, tile.y0, std::min(x + kPart, tile.x1), tile.y1, tile.index}, out);
+  }
+}
+
 }  // namespace
 }  // namespace eigenlight::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -157,7 +166,6 @@ HWY_EXPORT(InnovationTile);
 
 void innovation_tile(const InnovationInputs& in, const InnovationOptions& options, const Tile& tile,
                      const InnovationOutputs& out) {
-  EL_DCHECK(tile.x1 - tile.x0 <= kSegment);
   HWY_DYNAMIC_DISPATCH(InnovationTile)(in, options, tile, out);
 }
 

@@ -31,7 +31,9 @@ struct Wall {
   }
   std::int64_t process() {
     FireflyBound bound(kExtent, {});
-    return bound.process({prediction, confirmed, age, samples, variance}, light, residual);
+    const FireflyInputs in{prediction, confirmed, age, samples, variance};
+    bound.count(in, light, residual, {0, 0, kExtent.width, kExtent.height, 0});
+    return bound.bound(in, light, residual);
   }
 };
 

@@ -1,0 +1,46 @@
+#include "frame/strips.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "tests/support/extents.h"
+
+namespace eigenlight {
+namespace {
+
+TEST(Strips, CoverEachPixelOnceAndEachTileInOrder) {
+  for (const Extent extent : kSweepExtents) {
+    for (const TileGrid& grid :
+         {stage_tiles(extent), TileGrid(extent, 32, 32), TileGrid(extent, 1000, 7)}) {
+      Plane<int> visits(extent);
+      std::vector<int> next(static_cast<std::size_t>(grid.count()), -1);
+      for_each_segment(grid, [&](const Tile& row) {
+        const Tile tile = grid.tile(row.index);
+        EXPECT_EQ(row.x0, tile.x0);
+        EXPECT_EQ(row.x1, tile.x1);
+        EXPECT_EQ(row.y1, row.y0 + 1);
+        int& y = next[static_cast<std::size_t>(row.index)];
+        EXPECT_EQ(row.y0, y < 0 ? tile.y0 : y);
+        y = row.y1;
+        for (int x = row.x0; x < row.x1; ++x) ++visits(x, row.y0);
+      });
+      for (int y = 0; y < extent.height; ++y) {
+        for (int x = 0; x < extent.width; ++x) ASSERT_EQ(visits(x, y), 1) << x << ", " << y;
+      }
+    }
+  }
+}
+
+TEST(Strips, AreAsWideAsTheirTilesAndNoWiderThanAllowed) {
+  const TileGrid grid({1000, 70}, 32, 32);
+  for_each_strip(grid, [&](const Strip& strip) {
+    EXPECT_EQ(strip.area.x0, grid.tile(strip.area.index).x0);
+    EXPECT_EQ(strip.area.x1, grid.tile(strip.area.index + strip.tiles - 1).x1);
+    EXPECT_LE(strip.area.x1 - strip.area.x0, kStripWidth);
+    EXPECT_EQ(strip.area.y1, grid.tile(strip.area.index).y1);
+  });
+}
+
+}  // namespace
+}  // namespace eigenlight
