@@ -54,6 +54,12 @@ LightSet::LightSet(const Scene& scene, const EmbreeScene& geometry)
 
 void LightSet::update(const Lights& lights) {
   lights_ = lights;
+  disks_.clear();
+  for (const SunLight& sun : lights.suns) {
+    const float sine = std::sin(0.5f * half_angle(sun));
+    // Without losing digits.
+    disks_.push_back({std::sin(half_angle(sun)), 2.0f * sine * sine});
+  }
   const auto poses = geometry_->transforms();
   if (std::equal(poses.begin(), poses.end(), emitter_poses_.begin(), emitter_poses_.end())) return;
   // The order of the table follows the scene, so that poses alone decide what is chosen.
@@ -61,9 +67,10 @@ void LightSet::update(const Lights& lights) {
   emitter_poses_.assign(poses.begin(), poses.end());
 }
 
-float LightSet::sun_estimate(const SunLight& sun, const glm::vec3& normal) const {
+float LightSet::sun_estimate(std::size_t index, const glm::vec3& normal) const {
+  const SunLight& sun = lights_.suns[index];
   // A disk may reach over the horizon where its center does not.
-  const float cosine = glm::dot(sun.to_light, normal) + std::sin(half_angle(sun));
+  const float cosine = glm::dot(sun.to_light, normal) + disks_[index].sine;
   return luminance(sun.irradiance) * std::max(cosine, 0.0f);
 }
 
@@ -103,14 +110,13 @@ bool LightSet::is_visible() const {
 
 std::optional<LightSample> LightSet::sample_sun(const glm::vec3& normal, const glm::vec2& u) const {
   float total = 0.0f;
-  for (const SunLight& sun : lights_.suns) total += sun_estimate(sun, normal);
+  for (std::size_t i = 0; i < disks_.size(); ++i) total += sun_estimate(i, normal);
   if (!(total > 0.0f)) return std::nullopt;
   Picker picker(u.x, total);
-  for (const SunLight& sun : lights_.suns) {
-    if (!picker.take(sun_estimate(sun, normal))) continue;
-    const float angle = half_angle(sun);
-    const float sine = std::sin(0.5f * angle);
-    const float rise = 2.0f * sine * sine;  // 1 - cosine, without losing digits
+  for (std::size_t i = 0; i < disks_.size(); ++i) {
+    if (!picker.take(sun_estimate(i, normal))) continue;
+    const SunLight& sun = lights_.suns[i];
+    const float rise = disks_[i].rise;
     const glm::vec3 direction = sample_cone(sun.to_light, rise, {picker.remainder(), u.y});
     // The disk's irradiance is radiance * pi sin^2 a and its density 1 / (2 pi (1 - cos a)), so
     // that radiance over density is irradiance * 2 / (1 + cos a): also right for a sun of no size.

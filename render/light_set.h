@@ -72,7 +72,11 @@ class LightSet {
   [[nodiscard]] const Lights& lights() const { return lights_; }
 
  private:
-  [[nodiscard]] float sun_estimate(const SunLight& sun, const glm::vec3& normal) const;
+  struct SunDisk {
+    float sine = 0.0f;  // of the half angle
+    float rise = 0.0f;  // 1 - its cosine
+  };
+  [[nodiscard]] float sun_estimate(std::size_t sun, const glm::vec3& normal) const;
   [[nodiscard]] float environment_estimate() const;
   [[nodiscard]] float emitters_estimate(const glm::vec3& from) const;
   [[nodiscard]] float local_total(const glm::vec3& from) const;
@@ -90,6 +94,7 @@ class LightSet {
   bool has_emissive_materials_ = false;   // also of those that emitters_ leaves out
   std::vector<glm::mat4> emitter_poses_;  // that emitters_ was made for
   Lights lights_;
+  std::vector<SunDisk> disks_;  // of lights_.suns
 };
 
 /// Weight of a choice of density `pdf` where another way finds the same light with `other`.

@@ -1,6 +1,8 @@
 #include "render/live_source.h"
 
 #include <algorithm>
+#include <array>
+#include <limits>
 #include <utility>
 
 #include "frame/check.h"
@@ -11,6 +13,7 @@
 #include "render/light_set.h"
 #include "render/path_tracer.h"
 #include "render/sample_mean.h"
+#include "render/sample_queue.h"
 #include "render/sampler.h"
 #include "render/surface.h"
 
@@ -63,9 +66,9 @@ struct LiveSource::State {
 
   void pose(Frame& frame);
   void render(const Tile& tile, Frame& frame);
-  void light(glm::ivec2 at, Frame& frame, RayCounters& tally);
-  [[nodiscard]] glm::vec3 draw(glm::ivec2 at, std::uint32_t count, const Frame& frame,
-                               RayCounters& tally);
+  template <typename Count>
+  void draw(const Tile& tile, int frame, const Count& count, Planes<3>& mean, RayCounters& tally);
+  [[nodiscard]] glm::vec3 direct(glm::ivec2 at, int frame, RayCounters& tally) const;
   void add_counters(Frame& frame) const;
   [[nodiscard]] std::uint32_t key(glm::ivec2 at, std::uint32_t stream, int frame) const {
     return hash_key(options.seed, frame, at.x, at.y, stream);
@@ -90,16 +93,15 @@ struct LiveSource::State {
 // Camera, poses and lights of `frame.index` and of the frame before it.
 void LiveSource::State::pose(Frame& frame) {
   const SceneState now = animation->state(frame.index);
-  // Before frame 0 there is nothing: motion leads to the same view, but it does not count as still.
-  const SceneState then = frame.previous_index < 0 ? now : animation->state(frame.previous_index);
+  const SceneState then = animation->state(frame.previous_index);
   EL_CHECK(then.poses.size() == now.poses.size(),
            "frame {}: {} poses, frame {}: {}; expected one count", frame.index, now.poses.size(),
            frame.previous_index, then.poses.size());
   geometry.set_poses(now.poses);
   lights.update(now.lights);
   frame.camera = now.camera;
-  frame.is_static = frame.previous_index >= 0 && now.camera == then.camera &&
-                    now.poses == then.poses && same_places(now.lights, then.lights);
+  frame.is_static =
+      now.camera == then.camera && now.poses == then.poses && same_places(now.lights, then.lights);
   const auto current = geometry.transforms();
   previous_poses.assign(current.begin(), current.end());
   std::copy(then.poses.begin(), then.poses.end(),
@@ -107,43 +109,56 @@ void LiveSource::State::pose(Frame& frame) {
   previous = {then.camera, then.lights, previous_poses};
 }
 
-// `count` further samples of indirect light.
-glm::vec3 LiveSource::State::draw(glm::ivec2 at, std::uint32_t count, const Frame& frame,
-                                  RayCounters& tally) {
-  const std::uint32_t k = key(at, kIndirectStream, frame.index);
-  std::uint32_t& next = drawn(at.x, at.y);
-  FiniteMean mean;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    Sampler sampler(k, next++);
-    mean.add(tracer.indirect(hits(at.x, at.y).point, sampler, tally.rays), tally);
+// `count(x, y)` further samples of indirect light at each surface of the tile; 0 elsewhere.
+template <typename Count>
+void LiveSource::State::draw(const Tile& tile, int frame, const Count& count, Planes<3>& mean,
+                             RayCounters& tally) {
+  std::array<FiniteMean, kTileSide * kTileSide> means;
+  SampleQueue queue(tracer, tally);
+  auto pixel = means.begin();
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    for (int x = tile.x0; x < tile.x1; ++x, ++pixel) {
+      if (hits(x, y).kind != GuideHit::Kind::kSurface) continue;
+      const std::uint32_t k = key({x, y}, kIndirectStream, frame);
+      const std::uint32_t end = drawn(x, y) + count(x, y);
+      for (std::uint32_t& i = drawn(x, y); i != end; ++i) {
+        queue.add(hits(x, y).point, Sampler(k, i), *pixel);
+      }
+    }
   }
-  return mean.value();
+  queue.flush();
+  pixel = means.begin();
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    for (int x = tile.x0; x < tile.x1; ++x, ++pixel) {
+      const bool lit = hits(x, y).kind == GuideHit::Kind::kSurface && count(x, y) > 0;
+      store_pixel(lit ? pixel->value() : glm::vec3(0.0f), x, y, mean);
+    }
+  }
 }
 
-void LiveSource::State::light(glm::ivec2 at, Frame& frame, RayCounters& tally) {
-  glm::vec3 indirect(0.0f), direct(0.0f);
-  drawn(at.x, at.y) = 0;
+glm::vec3 LiveSource::State::direct(glm::ivec2 at, int frame, RayCounters& tally) const {
   const GuideHit& guide = hits(at.x, at.y);
-  if (guide.kind == GuideHit::Kind::kSurface) {
-    indirect = draw(at, static_cast<std::uint32_t>(options.spp), frame, tally);
-    const std::uint32_t k = key(at, kDirectStream, frame.index);
-    FiniteMean mean;
-    for (int i = 0; i < options.direct_spp; ++i) {
-      Sampler sampler(k, static_cast<std::uint32_t>(i));
-      mean.add(tracer.direct(guide.point, sampler, tally.rays), tally);
-    }
-    direct = mean.value();
+  if (guide.kind != GuideHit::Kind::kSurface) return glm::vec3(0.0f);
+  const std::uint32_t k = key(at, kDirectStream, frame);
+  FiniteMean mean;
+  for (int i = 0; i < options.direct_spp; ++i) {
+    Sampler sampler(k, static_cast<std::uint32_t>(i));
+    mean.add(tracer.direct(guide.point, sampler, tally.rays), tally);
   }
-  store_pixel(indirect, at.x, at.y, frame.indirect);
-  store_pixel(direct, at.x, at.y, frame.direct);
+  return mean.value();
 }
 
 void LiveSource::State::render(const Tile& tile, Frame& frame) {
   RayCounters tally;
   tally.rays = trace_guides({geometry, surfaces, lights}, previous, tile, frame, hits);
   for (int y = tile.y0; y < tile.y1; ++y) {
-    for (int x = tile.x0; x < tile.x1; ++x) light({x, y}, frame, tally);
+    for (int x = tile.x0; x < tile.x1; ++x) {
+      drawn(x, y) = 0;
+      store_pixel(direct({x, y}, frame.index, tally), x, y, frame.direct);
+    }
   }
+  const auto count = [this](int, int) { return static_cast<std::uint32_t>(options.spp); };
+  draw(tile, frame.index, count, frame.indirect, tally);
   counters[static_cast<std::size_t>(tile.index)] = tally;
 }
 
@@ -158,7 +173,9 @@ LiveSource::LiveSource(const Scene& scene, const Animation& animation, const Ren
                        std::vector<int> frames, std::size_t first) {
   options.validate();
   EL_CHECK(first <= frames.size(), "first frame {}: the list has {}", first, frames.size());
-  for (const int frame : frames) EL_CHECK(frame >= 0, "frame {}: expected 0 or more", frame);
+  for (const int frame : frames) {
+    EL_CHECK(frame > std::numeric_limits<int>::min(), "frame {}: no number before it", frame);
+  }
   const int any = frames.empty() ? 0 : frames.front();
   state_ = std::make_unique<State>(scene, animation, options, animation.state(any).poses.size());
   state_->frames = std::move(frames);
@@ -193,12 +210,8 @@ bool LiveSource::resample(const Plane<std::uint8_t>& extra, Frame& frame, Planes
   ensure_extent(mean, s.options.extent);
   for_each_tile(s.grid, [&](const Tile& tile) {
     RayCounters tally;
-    for (int y = tile.y0; y < tile.y1; ++y) {
-      for (int x = tile.x0; x < tile.x1; ++x) {
-        const bool lit = extra(x, y) > 0 && s.hits(x, y).kind == GuideHit::Kind::kSurface;
-        store_pixel(lit ? s.draw({x, y}, extra(x, y), frame, tally) : glm::vec3(0.0f), x, y, mean);
-      }
-    }
+    const auto count = [&extra](int x, int y) { return static_cast<std::uint32_t>(extra(x, y)); };
+    s.draw(tile, frame.index, count, mean, tally);
     s.counters[static_cast<std::size_t>(tile.index)] = tally;
   });
   s.add_counters(frame);

@@ -1,9 +1,9 @@
 #include "render/path_tracer.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
-#include <optional>
 
 namespace eigenlight {
 namespace {
@@ -20,15 +20,6 @@ glm::vec3 ray_origin(const SurfacePoint& point) {
 
 }  // namespace
 
-// A cosine-distributed ray and what it met.
-struct PathTracer::Bounce {
-  Ray ray;
-  float pdf = 0.0f;  // per steradian
-  glm::vec3 tint{1.0f};
-  std::optional<Hit> hit;
-  std::optional<ShapeHit> shape;  // then there is no hit
-};
-
 // False where the direction is under the surface: an interpolated normal leans over that far. Such
 // rays carry nothing, whichever way they are chosen.
 bool PathTracer::sample_ray(const SurfacePoint& point, Sampler& sampler, Bounce& bounce) const {
@@ -37,6 +28,7 @@ bool PathTracer::sample_ray(const SurfacePoint& point, Sampler& sampler, Bounce&
   const float phi = 2.0f * kPi * u.y;
   const float height = std::sqrt(1.0f - u.x);
   const glm::vec3 local(radius * std::cos(phi), radius * std::sin(phi), height);
+  bounce = Bounce();
   bounce.ray = {ray_origin(point), around(point.normal, local)};
   bounce.pdf = height / kPi;
   return glm::dot(bounce.ray.direction, point.geometric) > 0.0f && bounce.pdf > 0.0f;
@@ -83,30 +75,32 @@ glm::vec3 PathTracer::look_for_lights(Bounce& bounce, std::int64_t& rays) const 
   return bounce.tint * seen(bounce);
 }
 
-glm::vec3 PathTracer::shadowed(const SurfacePoint& point, const LightSample& sample,
-                               float weight_against, std::int64_t& rays) const {
+glm::vec3 PathTracer::shadowed(const SurfacePoint& point, const LightSample& sample, const Aim& aim,
+                               std::int64_t& rays) const {
   const float cosine = glm::dot(sample.direction, point.normal);
   if (!(cosine > 0.0f) || !(glm::dot(sample.direction, point.geometric) > 0.0f)) {
     return glm::vec3(0.0f);
   }
-  const Ray ray{ray_origin(point), sample.direction, 0.0f, sample.distance * (1.0f - kShort)};
+  const Ray ray{ray_origin(point), sample.direction, 0.0f, sample.distance * (1.0f - kShort),
+                aim.quick};
   ++rays;
   if (world_.geometry.occluded(ray) || world_.lights.occluded(ray)) return glm::vec3(0.0f);
-  const float weight = power_heuristic(sample.pdf, weight_against * cosine / kPi);
+  const float weight = power_heuristic(sample.pdf, aim.weight_against * cosine / kPi);
   return weight * cosine / kPi * sample.value * world_.geometry.glass_tint(ray);
 }
 
 // Light that reaches the point straight from one sun and one local light.
-glm::vec3 PathTracer::aim(const SurfacePoint& point, Sampler& sampler, std::int64_t& rays) const {
+glm::vec3 PathTracer::aim(const SurfacePoint& point, Sampler& sampler, bool quick,
+                          std::int64_t& rays) const {
   glm::vec3 sum(0.0f);
   if (world_.lights.has_suns()) {
     const auto sample = world_.lights.sample_sun(point.normal, sampler.next_2d());
-    if (sample) sum += shadowed(point, *sample, 0.0f, rays);  // no other ray finds a sun
+    if (sample) sum += shadowed(point, *sample, {0.0f, quick}, rays);  // no other ray finds a sun
   }
   if (world_.lights.has_local()) {
     const float pick = sampler.next_1d();
     const auto sample = world_.lights.sample_local(ray_origin(point), pick, sampler.next_2d());
-    if (sample) sum += shadowed(point, *sample, 1.0f, rays);
+    if (sample) sum += shadowed(point, *sample, {1.0f, quick}, rays);
   }
   return sum;
 }
@@ -115,7 +109,7 @@ std::uint8_t PathTracer::lit_by(const SurfacePoint& point, std::int64_t& rays) c
   const glm::vec2 middle(0.5f);
   const auto reaches = [&](const std::optional<LightSample>& sample) {
     if (!sample) return false;
-    const glm::vec3 light = shadowed(point, *sample, 0.0f, rays);
+    const glm::vec3 light = shadowed(point, *sample, {}, rays);
     return std::max({light.x, light.y, light.z}) > 0.0f;
   };
   std::uint8_t lit = 0;
@@ -131,36 +125,73 @@ glm::vec3 PathTracer::direct(const SurfacePoint& point, Sampler& sampler,
                              std::int64_t& rays) const {
   Bounce bounce;
   const bool above = sample_ray(point, sampler, bounce);
-  const glm::vec3 sum = aim(point, sampler, rays);
+  const glm::vec3 sum = aim(point, sampler, false, rays);
   return above ? sum + look_for_lights(bounce, rays) : sum;
 }
 
-glm::vec3 PathTracer::indirect(const SurfacePoint& point, Sampler& sampler,
+glm::vec3 PathTracer::indirect(const SurfacePoint& point, const Sampler& sampler,
                                std::int64_t& rays) const {
-  glm::vec3 sum(0.0f), throughput(1.0f);
-  SurfacePoint at = point;
-  for (int depth = 0;; ++depth) {
-    Bounce bounce;
-    if (!sample_ray(at, sampler, bounce)) break;
-    if (depth == bounces_) {  // the light that the last surface reflects
-      sum += throughput * look_for_lights(bounce, rays);
-      break;
+  Path path(point, sampler);
+  indirect(std::span<Path>(&path, 1), rays);
+  return path.light;
+}
+
+void PathTracer::indirect(std::span<Path> paths, std::int64_t& rays) const {
+  for (; !paths.empty(); paths = paths.subspan(std::min(paths.size(), kSideBySide))) {
+    std::array<Path*, kSideBySide> alive{};
+    const std::size_t size = std::min(paths.size(), kSideBySide);
+    for (std::size_t i = 0; i < size; ++i) alive[i] = &paths[i];
+    auto end = alive.begin() + static_cast<std::ptrdiff_t>(size);
+    const auto keep = [&](const auto& goes_on) {
+      end = std::remove_if(alive.begin(), end, [&](Path* path) { return !goes_on(*path); });
+    };
+    for (int depth = 0; end != alive.begin(); ++depth) {
+      keep([&](Path& path) { return send(path, depth, rays); });
+      keep([&](Path& path) { return arrive(path, depth); });
+      keep([&](Path& path) { return reflect(path, depth, rays); });
     }
-    trace(bounce, rays);
-    throughput *= bounce.tint;
-    if (depth > 0) sum += throughput * seen(bounce);  // at depth 0 it is direct light
-    if (!bounce.hit) break;
-    at = world_.surfaces.bounce_point(bounce.ray, *bounce.hit);
-    throughput *= at.albedo;
-    sum += throughput * aim(at, sampler, rays);
-    if (depth == 0) continue;
-    // Russian roulette, from the second bounce on.
-    const float brightest = std::max({throughput.x, throughput.y, throughput.z});
-    const float survival = std::min(1.0f, brightest);
-    if (!(sampler.next_1d() < survival)) break;
-    throughput /= survival;
   }
-  return sum;
+}
+
+// One step of a path in three, each of which asks memory for what the next will read. They return
+// whether the path goes on.
+bool PathTracer::send(Path& path, int depth, std::int64_t& rays) const {
+  Bounce& bounce = path.bounce_;
+  if (!sample_ray(path.at, path.sampler, bounce)) return false;
+  bounce.ray.quick = true;
+  if (depth == bounces_) {  // the light that the last surface reflects
+    path.light += path.throughput_ * look_for_lights(bounce, rays);
+    return false;
+  }
+  trace(bounce, rays);
+  if (bounce.hit) world_.surfaces.prefetch(*bounce.hit);
+  return true;
+}
+
+bool PathTracer::arrive(Path& path, int depth) const {
+  const Bounce& bounce = path.bounce_;
+  path.throughput_ *= bounce.tint;
+  if (depth > 0) path.light += path.throughput_ * seen(bounce);  // at depth 0 it is direct light
+  if (!bounce.hit) return false;
+  const auto [point, texel] = world_.surfaces.bounce_point(bounce.ray, *bounce.hit);
+  path.at = point;
+  path.texel_ = texel;
+  if (texel != nullptr) __builtin_prefetch(texel);
+  return true;
+}
+
+bool PathTracer::reflect(Path& path, int depth, std::int64_t& rays) const {
+  if (path.texel_ != nullptr) path.at.albedo *= TexturePyramid::color(*path.texel_);
+  glm::vec3& throughput = path.throughput_;
+  throughput *= path.at.albedo;
+  path.light += throughput * aim(path.at, path.sampler, true, rays);
+  if (depth == 0) return true;
+  // Russian roulette, from the second bounce on.
+  const float brightest = std::max({throughput.x, throughput.y, throughput.z});
+  const float survival = std::min(1.0f, brightest);
+  if (!(path.sampler.next_1d() < survival)) return false;
+  throughput /= survival;
+  return true;
 }
 
 }  // namespace eigenlight

@@ -43,11 +43,22 @@ constexpr std::uint32_t kGolden = 0x9e3779b9U;  // 2^32 over the golden ratio: s
 Sampler::Sampler(std::uint32_t key, std::uint32_t index)
     : key_(key), reversed_index_(reverse_bits(index)) {}
 
-glm::vec2 Sampler::next_2d() {
+// The shuffled index of the next pair; shuffling is Owen scrambling of the index itself.
+std::uint32_t Sampler::next_index(std::uint32_t& seed) {
   key_ += kGolden;
-  const std::uint32_t seed = mix32(key_);
-  // Shuffling is Owen scrambling of the index itself.
-  const std::uint32_t index = reverse_bits(scramble_reversed(reversed_index_, seed));
+  seed = mix32(key_);
+  return reverse_bits(scramble_reversed(reversed_index_, seed));
+}
+
+float Sampler::next_1d() {
+  std::uint32_t seed = 0;
+  const std::uint32_t index = next_index(seed);
+  return to_unit(reverse_bits(scramble_reversed(index, mix32(seed + 1U))));
+}
+
+glm::vec2 Sampler::next_2d() {
+  std::uint32_t seed = 0;
+  const std::uint32_t index = next_index(seed);
   const std::uint32_t x = scramble_reversed(index, mix32(seed + 1U));
   const std::uint32_t y = scramble_reversed(sobol_reversed(index), mix32(seed + 2U));
   return {to_unit(reverse_bits(x)), to_unit(reverse_bits(y))};

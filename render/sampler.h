@@ -18,9 +18,11 @@ class Sampler {
   /// The next pair of dimensions, in [0, 1)^2.
   [[nodiscard]] glm::vec2 next_2d();
   /// One dimension of the next pair.
-  [[nodiscard]] float next_1d() { return next_2d().x; }
+  [[nodiscard]] float next_1d();
 
  private:
+  [[nodiscard]] std::uint32_t next_index(std::uint32_t& seed);
+
   std::uint32_t key_;
   std::uint32_t reversed_index_;
 };

@@ -117,12 +117,12 @@ SurfacePoint SurfaceTable::guide_point(const Ray& ray, const Hit& hit, float spr
   return p;
 }
 
-SurfacePoint SurfaceTable::bounce_point(const Ray& ray, const Hit& hit) const {
-  SurfacePoint p = point(ray, hit, ray.origin + hit.t * ray.direction);
+SurfaceTable::BouncePoint SurfaceTable::bounce_point(const Ray& ray, const Hit& hit) const {
+  BouncePoint p{point(ray, hit, ray.origin + hit.t * ray.direction)};
   const Look& look = *look_of_[hit.instance];
   if (look.texture == nullptr) return p;
   const int level = std::ilogb(std::max(footprint(ray, hit, kBounceSpread), 1.0f)) / 2;
-  p.albedo *= look.texture->nearest(interpolate(look.triangles[hit.triangle].uv, hit), level);
+  p.texel = &look.texture->nearest_texel(interpolate(look.triangles[hit.triangle].uv, hit), level);
   return p;
 }
 

@@ -32,9 +32,18 @@ class SurfaceTable {
   /// The point of a guide ray; `spread` is the angle of its cone in radians (a pixel's), for the
   /// texture filter (ray cones; Akenine-Moller et al., Ray Tracing Gems, ch. 20).
   [[nodiscard]] SurfacePoint guide_point(const Ray& ray, const Hit& hit, float spread) const;
-  /// The point that a bounce ray met. Textures are read at the nearest texel of the level that fits
-  /// a cone of kBounceSpread.
-  [[nodiscard]] SurfacePoint bounce_point(const Ray& ray, const Hit& hit) const;
+  /// The point that a bounce ray met. Its texture is the nearest texel of the level that fits a
+  /// cone of kBounceSpread, whose color is still to be multiplied with albedo; null: none.
+  struct BouncePoint {
+    SurfacePoint point;
+    const std::uint32_t* texel = nullptr;
+  };
+  [[nodiscard]] BouncePoint bounce_point(const Ray& ray, const Hit& hit) const;
+  /// Asks memory for what bounce_point() will read.
+  void prefetch(const Hit& hit) const {
+    const auto& triangles = look_of_[hit.instance]->triangles;
+    if (!triangles.empty()) __builtin_prefetch(&triangles[hit.triangle]);
+  }
 
   /// Material::emission of the triangle that was hit: not yet scaled or tilted.
   [[nodiscard]] const glm::vec3& emission(const Hit& hit) const {

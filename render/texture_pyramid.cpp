@@ -138,11 +138,13 @@ glm::vec3 TexturePyramid::trilinear(const glm::vec2& uv, float level) const {
   return glm::mix(color, bilinear(levels_[fine + 1], uv), weight);
 }
 
-glm::vec3 TexturePyramid::nearest(const glm::vec2& uv, int level) const {
+const std::uint32_t& TexturePyramid::nearest_texel(const glm::vec2& uv, int level) const {
   const Level& l = levels_[static_cast<std::size_t>(std::clamp(level, 0, levels() - 1))];
   const int x = wrap(uv.x, l.extent.width);
   const int y = wrap(uv.y, l.extent.height);
-  return decode(l.texels[static_cast<std::size_t>(y * l.extent.width + x)]);
+  return l.texels[static_cast<std::size_t>(y * l.extent.width + x)];
 }
+
+glm::vec3 TexturePyramid::color(std::uint32_t texel) { return decode(texel); }
 
 }  // namespace eigenlight

@@ -25,7 +25,12 @@ class TexturePyramid {
   /// `uv` repeats. For guide rays, which must not flicker under motion.
   [[nodiscard]] glm::vec3 trilinear(const glm::vec2& uv, float level) const;
   /// Linear color of the nearest texel of one level (clamped). For bounce rays: one memory access.
-  [[nodiscard]] glm::vec3 nearest(const glm::vec2& uv, int level) const;
+  [[nodiscard]] glm::vec3 nearest(const glm::vec2& uv, int level) const {
+    return color(nearest_texel(uv, level));
+  }
+  /// The same in two steps, so that memory can be asked for the texel ahead of time.
+  [[nodiscard]] const std::uint32_t& nearest_texel(const glm::vec2& uv, int level) const;
+  [[nodiscard]] static glm::vec3 color(std::uint32_t texel);
 
  private:
   struct Level {

@@ -10,6 +10,7 @@
 #include "frame/tiles.h"
 #include "render/antialias/lookup.h"
 #include "render/antialias/reconstruct.h"
+#include "render/sample_queue.h"
 
 namespace eigenlight {
 namespace {
@@ -93,11 +94,12 @@ glm::vec3 PixelRays::direct(const EyeRay& ray, int samples) {
 
 glm::vec3 PixelRays::indirect(const EyeRay& ray) {
   FiniteMean mean;
+  SampleQueue queue(in_.tracer, tally_.counters);
   for (int i = 0; i < in_.spp; ++i) {
-    Sampler sampler(key(kIndirectStream, ray.index), static_cast<std::uint32_t>(i));
-    mean.add(in_.tracer.indirect(ray.hit.guide.point, sampler, tally_.counters.rays),
-             tally_.counters);
+    queue.add(ray.hit.guide.point, {key(kIndirectStream, ray.index), static_cast<std::uint32_t>(i)},
+              mean);
   }
+  queue.flush();
   return mean.value();
 }
 

@@ -13,6 +13,7 @@
 #include "frame/tiles.h"
 #include "render/gbuffer.h"
 #include "render/path_tracer.h"
+#include "render/sample_queue.h"
 #include "render/scene_file.h"
 #include "tests/support/scenes.h"
 
@@ -87,18 +88,20 @@ class IndirectBench {
     std::atomic<std::int64_t> rays = 0;
     std::vector<double> sums(static_cast<std::size_t>(grid_.count()));
     for_each_tile(grid_, [&](const Tile& tile) {
-      std::int64_t traced = 0;
+      RayCounters tally;
+      FiniteMean mean;
+      SampleQueue queue(tracer_, tally);
       for (int y = tile.y0; y < tile.y1; ++y) {
         for (int x = tile.x0; x < tile.x1; ++x) {
           if (hits_(x, y).kind != GuideHit::Kind::kSurface) continue;
           for (std::uint32_t i = 0; i < kSamples; ++i) {
-            Sampler sampler(hash_key(frame, x, y), i);
-            const glm::vec3 sample = tracer_.indirect(hits_(x, y).point, sampler, traced);
-            sums[static_cast<std::size_t>(tile.index)] += static_cast<double>(sample.y);
+            queue.add(hits_(x, y).point, Sampler(hash_key(frame, x, y), i), mean);
           }
         }
       }
-      rays += traced;
+      queue.flush();
+      sums[static_cast<std::size_t>(tile.index)] = static_cast<double>(mean.value().y);
+      rays += tally.rays;
     });
     for (const double sum : sums) light += sum;
     return rays;

@@ -120,6 +120,52 @@ TEST(EmbreeScene, NoRayLeavesAClosedCube) {
   }
 }
 
+// Quick rays may, but hardly ever do.
+TEST(EmbreeScene, QuickRaysLeaveAClosedCubeLessThanOnceInAHundredThousand) {
+  Scene scene;
+  test::add_cube(scene, add_material(scene, glm::vec3(0.5f)));
+  const EmbreeScene geometry(scene);
+  std::mt19937 random(2);
+  std::uniform_real_distribution<float> inside(-0.9f, 0.9f);
+  int leaks = 0;
+  for (int i = 0; i < 400000; ++i) {
+    const glm::vec3 origin(inside(random), inside(random), inside(random));
+    const glm::vec3 target(inside(random), inside(random), inside(random));
+    Ray ray{origin, glm::normalize(target - origin)};
+    ray.quick = true;
+    if (!geometry.intersect(ray) || !geometry.occluded(ray)) ++leaks;
+  }
+  EXPECT_LE(leaks, 3);
+}
+
+TEST(EmbreeScene, QuickRaysMeetWhatOthersMeet) {
+  Scene scene;
+  const int leaf = add_material(scene, glm::vec3(1.0f));
+  scene.materials[0].texture = 0;
+  scene.materials[0].alpha_cutoff = 0.5f;
+  scene.textures.push_back(half_clear());
+  test::add_quad(scene, leaf, {glm::vec3(0, 1, 0), glm::vec3(1, 0, 0), glm::vec3(0, 0, 1)});
+  const int stone = add_material(scene, glm::vec3(0.5f));
+  add_floor(scene, stone, 5.0f);
+  add_floor(scene, stone, 0.5f, 0.5f);
+  const EmbreeScene geometry(scene, 1);
+  std::mt19937 random(4);
+  std::uniform_real_distribution<float> wide(-1.0f, 2.0f);
+  for (int i = 0; i < 20000; ++i) {
+    const glm::vec3 origin(wide(random), 2.0f, wide(random));
+    Ray ray{origin, glm::normalize(glm::vec3(wide(random), 0, wide(random)) - origin)};
+    const auto exact = geometry.intersect(ray);
+    ray.quick = true;
+    const auto quick = geometry.intersect(ray);
+    ASSERT_TRUE(exact && quick);
+    EXPECT_EQ(quick->instance, exact->instance);
+    EXPECT_EQ(quick->triangle, exact->triangle);
+    EXPECT_NEAR(quick->t, exact->t, 1e-5f);
+    EXPECT_NEAR(quick->u, exact->u, 1e-4f);
+    EXPECT_NEAR(quick->v, exact->v, 1e-4f);
+  }
+}
+
 TEST(EmbreeScene, BadIndicesAreNamed) {
   Scene scene;
   add_floor(scene, add_material(scene, glm::vec3(0.5f)), 1.0f);

@@ -116,6 +116,29 @@ TEST(LiveSource, FramesAndSeedsAreIndependent) {
   EXPECT_FALSE(test::same_bits(first.indirect, nth(other, 0).indirect));
 }
 
+TEST(LiveSource, NegativeFramesAreFramesLikeOthers) {
+  const Scene scene = moving_scene();
+  const RenderOptions o = small_options();
+  const FunctionAnimation animation = moving_animation(scene, o.extent);
+  const FunctionAnimation later([&](int frame) { return animation.state(frame - 12); });
+  LiveSource source(scene, animation, o, {-10, -2, -1, 0, 1});
+  LiveSource alone(scene, animation, o, {0});
+  LiveSource shifted(scene, later, o, {11});
+  const Frame first = nth(source, 0);
+  EXPECT_EQ(first.previous_index, -11);
+  const Frame last_negative = nth(source, 1);
+  EXPECT_EQ(last_negative.index, -1);
+  EXPECT_EQ(last_negative.previous_index, -2);
+  // The same places under another number: only the noise differs.
+  const Frame other = nth(shifted, 0);
+  EXPECT_TRUE(test::same_bits(last_negative.motion, other.motion));
+  EXPECT_TRUE(test::same_bits(last_negative.surface.normal, other.surface.normal));
+  EXPECT_FALSE(test::same_bits(last_negative.indirect, other.indirect));
+  expect_same(nth(source, 0), nth(alone, 0));
+  EXPECT_THROW(LiveSource(scene, animation, o, {std::numeric_limits<int>::min()}),
+               std::invalid_argument);
+}
+
 TEST(LiveSource, EndsAfterTheLastFrame) {
   const Scene scene = moving_scene();
   const RenderOptions o = small_options();
@@ -216,7 +239,7 @@ TEST(LiveSource, IsStaticOnlyWhileCameraAndObjectsStand) {
     return state;
   });
   LiveSource source(scene, animation, o, {0, 1, 2, 3, 4, 5, 6, 7, 8});
-  const bool expected[] = {false, true, true, false, true, false, true, false, true};
+  const bool expected[] = {true, true, true, false, true, false, true, false, true};
   Frame frame;
   for (const bool is_static : expected) {
     ASSERT_TRUE(source.next(frame));

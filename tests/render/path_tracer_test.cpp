@@ -336,5 +336,34 @@ TEST(PathTracer, ThinGlassTintsLightAndIsNotSeen) {
   EXPECT_NEAR(test::mean(frame.direct).z, 2.0, 0.04);
 }
 
+TEST(PathTracer, PathsSideBySideAreThoseOfEachAlone) {
+  Scene scene;
+  add_material(scene, {0.7f, 0.5f, 0.3f}, {0.2f, 0.1f, 0.0f});
+  add_material(scene, {0.9f, 0.9f, 0.9f});
+  test::add_cube(scene, 0);
+  add_floor(scene, 1, 0.3f);
+  scene.lights.rects = {{{0, 0.9f, 0}, {0.2f, 0, 0}, {0, 0, 0.2f}, {3, 2, 1}}};
+  const EmbreeScene geometry(scene);
+  const SurfaceTable surfaces(scene, geometry);
+  LightSet lights(scene, geometry);
+  lights.update(scene.lights);
+  const PathTracer tracer({geometry, surfaces, lights}, 5);
+  const SurfacePoint point{{0.1f, -0.9f, 0}, {0, 1, 0}, {0, 1, 0}, glm::vec3(0.5f), 1e-5f};
+  std::vector<PathTracer::Path> paths;
+  for (std::uint32_t i = 0; i < 3 * PathTracer::kSideBySide + 5; ++i) {
+    paths.emplace_back(point, Sampler(7, i));
+  }
+  std::int64_t rays = 0, rays_alone = 0;
+  tracer.indirect(paths, rays);
+  bool any = false;
+  for (std::uint32_t i = 0; i < paths.size(); ++i) {
+    const glm::vec3 alone = tracer.indirect(point, Sampler(7, i), rays_alone);
+    EXPECT_EQ(paths[i].light, alone) << "path " << i;
+    any = any || alone.x > 0.0f;
+  }
+  EXPECT_TRUE(any);
+  EXPECT_EQ(rays, rays_alone);
+}
+
 }  // namespace
 }  // namespace eigenlight
