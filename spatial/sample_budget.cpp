@@ -1,18 +1,13 @@
 #include "spatial/sample_budget.h"
 
 #include <algorithm>
-#include <cmath>
+#include <functional>
 
 namespace eigenlight {
 namespace {
 
-// Age in whole samples, saturated to the last bin. To the nearest, because most ages are whole
-// numbers but for the rounding of their warp, and must not lose a sample to it.
-int age_samples(float age, int spp) {
-  // No age is negative or NaN, but as an index it would reach beyond the histogram.
-  if (!std::isgreater(age, 0.0f)) return 0;
-  return static_cast<int>(std::min(age * static_cast<float>(spp) + 0.5f, 255.0f));
-}
+// Rows at once: enough that a histogram is worth its summing, few enough for many threads.
+constexpr int kRows = 16;
 
 }  // namespace
 
@@ -25,14 +20,17 @@ void BudgetOptions::validate() const {
 
 SampleBudget::SampleBudget(Extent extent, const BudgetOptions& options)
     : options_(options),
-      grid_(stage_tiles(extent)),
+      grid_(extent, extent.width, kRows),
       histograms_(static_cast<std::size_t>(grid_.count())) {
   options.validate();
 }
 
-int SampleBudget::find_level(const Histogram& pixels, std::int64_t limit, int spp) const {
-  const int highest =
-      std::min(255, static_cast<int>((options_.enough - 1.0f) * static_cast<float>(spp)));
+int SampleBudget::highest(int spp) const {
+  return std::min(kBudgetBins - 1,
+                  static_cast<int>((options_.enough - 1.0f) * static_cast<float>(spp)));
+}
+
+int SampleBudget::find_level(const AgeHistogram& pixels, std::int64_t limit, int spp) const {
   const auto cost = [&](int level) {
     std::int64_t sum = 0;
     for (int age = 0; age < level; ++age) {
@@ -41,7 +39,7 @@ int SampleBudget::find_level(const Histogram& pixels, std::int64_t limit, int sp
     return sum;
   };
   int level = 0;
-  while (level < highest && cost(level + 1) <= limit) ++level;
+  while (level < highest(spp) && cost(level + 1) <= limit) ++level;
   return level;
 }
 
@@ -51,18 +49,16 @@ BudgetStats SampleBudget::process(const Frame& frame, const Plane<float>& age,
                extra.extent() == grid_.extent(),
            "sample budget made for {}x{}: got planes of another size", grid_.extent().width,
            grid_.extent().height);
-  for_each_tile(grid_, [&](const Tile& tile) {
-    Histogram& histogram = histograms_[static_cast<std::size_t>(tile.index)];
+  for_each_tile(grid_, [&](const Tile& rows) {
+    AgeHistogram& histogram = histograms_[static_cast<std::size_t>(rows.index)];
     histogram.fill(0);
-    for (int y = tile.y0; y < tile.y1; ++y) {
-      for (int x = tile.x0; x < tile.x1; ++x) {
-        if (frame.surface.id(x, y) == 0) continue;
-        ++histogram[static_cast<std::size_t>(age_samples(age(x, y), frame.spp))];
-      }
+    for (int y = rows.y0; y < rows.y1; ++y) {
+      count_ages(frame.surface.id.row(y), age.row(y), rows.x1, frame.spp, highest(frame.spp),
+                 histogram);
     }
   });
-  Histogram pixels{};
-  for (const Histogram& h : histograms_) {
+  AgeHistogram pixels{};
+  for (const AgeHistogram& h : histograms_) {
     std::transform(h.begin(), h.end(), pixels.begin(), pixels.begin(), std::plus<>());
   }
   std::int64_t surface = 0;
@@ -78,13 +74,10 @@ BudgetStats SampleBudget::process(const Frame& frame, const Plane<float>& age,
     stats.samples += count * std::min(level - a, options_.most_per_pixel);
     stats.pixels += count;
   }
-  for_each_tile(grid_, [&](const Tile& tile) {
-    for (int y = tile.y0; y < tile.y1; ++y) {
-      for (int x = tile.x0; x < tile.x1; ++x) {
-        const int missing =
-            frame.surface.id(x, y) == 0 ? 0 : level - age_samples(age(x, y), frame.spp);
-        extra(x, y) = static_cast<std::uint8_t>(std::clamp(missing, 0, options_.most_per_pixel));
-      }
+  for_each_tile(grid_, [&](const Tile& rows) {
+    for (int y = rows.y0; y < rows.y1; ++y) {
+      fill_up(frame.surface.id.row(y), age.row(y), rows.x1, frame.spp, level,
+              options_.most_per_pixel, extra.row(y));
     }
   });
   return stats;

@@ -6,6 +6,7 @@
 
 #include "frame/frame.h"
 #include "frame/tiles.h"
+#include "spatial/sample_budget_kernel.h"
 
 namespace eigenlight {
 
@@ -39,14 +40,13 @@ class SampleBudget {
   BudgetStats process(const Frame& frame, const Plane<float>& age, Plane<std::uint8_t>& extra);
 
  private:
-  /// Pixels by whole samples of age; ages of 255 and more are one bin.
-  using Histogram = std::array<std::int64_t, 256>;
-
-  [[nodiscard]] int find_level(const Histogram& pixels, std::int64_t limit, int spp) const;
+  /// Samples at which a pixel is left alone, whatever the budget.
+  [[nodiscard]] int highest(int spp) const;
+  [[nodiscard]] int find_level(const AgeHistogram& pixels, std::int64_t limit, int spp) const;
 
   BudgetOptions options_;
   TileGrid grid_;
-  std::vector<Histogram> histograms_;  // per tile
+  std::vector<AgeHistogram> histograms_;  // per strip of rows
 };
 
 }  // namespace eigenlight

@@ -9,6 +9,7 @@
 #include "frame/float_traps.h"
 #include "tests/support/extents.h"
 #include "tests/support/random_frames.h"
+#include "tests/support/targets.h"
 
 namespace eigenlight {
 namespace {
@@ -85,7 +86,7 @@ TEST(SampleBudget, AgesThatAreNoneCountAsNew) {
   }
 }
 
-TEST(SampleBudget, AgreesWithBruteForce) {
+void agree_with_brute_force() {
   for (const Extent extent : kSweepExtents) {
     for (const double share : {0.0, 0.05, 0.3, 1.0, 20.0}) {
       for (const int most : {0, 3, 120}) {
@@ -107,6 +108,8 @@ TEST(SampleBudget, AgreesWithBruteForce) {
     }
   }
 }
+
+TEST(SampleBudget, AgreesWithBruteForce) { for_each_target(agree_with_brute_force); }
 
 TEST(SampleBudget, NeverExceedsTheLimit) {
   for (std::uint32_t seed = 1; seed < 20; ++seed) {
