@@ -79,8 +79,6 @@ RenderPlan make_plan(const RenderSettings& settings) {
   const bool is_reference = plan.method == kReferenceMethod;
   plan.denoiser = is_reference ? "noisy" : plan.method;
   plan.frames = parse_frame_range(settings.frames);
-  const int lowest = *std::min_element(plan.frames.begin(), plan.frames.end());
-  EL_CHECK(lowest >= 0, "frames '{}': flythroughs start at frame 0", settings.frames);
   check_range("bases", settings.bases, 1, 8);
   check_range("seed", settings.seed, 0, kSeeds - 1);
   check_range("threads", settings.threads, 0, 1024);

@@ -100,7 +100,9 @@ class IndirectBench {
         }
       }
       queue.flush();
-      sums[static_cast<std::size_t>(tile.index)] = static_cast<double>(mean.value().y);
+      if (tally.rays > 0) {
+        sums[static_cast<std::size_t>(tile.index)] = static_cast<double>(mean.value().y);
+      }
       rays += tally.rays;
     });
     for (const double sum : sums) light += sum;

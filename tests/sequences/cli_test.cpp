@@ -66,6 +66,23 @@ TEST_F(CliTest, OfAnOptionGivenTwiceTheLastCounts) {
   EXPECT_EQ(nlohmann::json::parse(bytes("a/run.json"))["spp"], 1);
 }
 
+TEST_F(CliTest, NegativeFramesAreRenderedResumedAndMeasured) {
+  ASSERT_EQ(render("a", {"-q", "--frames", "-2-1", "--perturb", "all"}).status, 0);
+  ASSERT_EQ(render("b", {"-q", "--frames", "-2-1", "--perturb", "all", "--seed", "1"}).status, 0);
+  for (const char* name :
+       {"frame.-002.exr", "frame.-001.exr", "frame.0000.exr", "frame.0001.exr"}) {
+    EXPECT_TRUE(std::filesystem::exists(dir_ / "a" / name)) << name;
+  }
+  const std::string whole = bytes("a/frame.0001.exr");
+  std::filesystem::remove(dir_ / "a/frame.0000.exr");
+  EXPECT_EQ(render("a", {"-q", "--frames", "-2-1", "--perturb", "all", "--resume"}).status, 0);
+  EXPECT_TRUE(bytes("a/frame.0001.exr") == whole);
+  const Outcome measured = call({"evaluate", "-t", dir_ / "a/frame.####.exr", "-r",
+                                 dir_ / "b/frame.####.exr", "--layer", "indirect"});
+  EXPECT_EQ(measured.status, 0) << measured.err;
+  EXPECT_THAT(measured.out, HasSubstr("4 frames"));
+}
+
 TEST_F(CliTest, BitsDependOnNeitherThreadsNorOtherFrames) {
   EXPECT_EQ(render("one", {"--frames", "0-2", "--threads", "1"}).status, 0);
   EXPECT_EQ(render("two", {"--frames", "0-2", "--threads", "2"}).status, 0);
@@ -153,7 +170,6 @@ TEST_F(CliTest, EachMistakeIsOneClearLine) {
       {{"--seed", "-1"}, "seed -1: expected 0 to 2147483647"},
       {{"--threads", "-2"}, "threads -2: expected 0 to 1024"},
       {{"--frames", "1-q"}, "frames '1-q': expected 7, 1-10"},
-      {{"--frames", "-10-100"}, "frames '-10-100': flythroughs start at frame 0"},
       {{"--layers", "color,depth"}, "unknown layer 'depth'; known: color, "},
       {{"--perturb", "camera"}, "camera"},
       {{"--aa", "fxaa"}, "unknown aa 'fxaa'; known: none, lookup, sraa, supersample:N"},
