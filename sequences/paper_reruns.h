@@ -1,11 +1,11 @@
-// The papers whose claims are measured again: each by its own file, or files of its name.
+// The papers whose claims are measured again: each by its own file, or files of its name, and in
+// papers() (paper.cpp) by one line.
 #pragma once
 
 #include "sequences/paper.h"
 
 namespace eigenlight {
 
-/// Chen, Lei and Chang 2012: Tables 1 and 2, Fig. 7, 10 and 15.
-[[nodiscard]] PaperReport rerun_chen2012(const PaperRun& run);
+[[nodiscard]] Paper chen2012();  ///< Chen, Lei and Chang 2012: Tables 1 and 2, Fig. 7, 10 and 15
 
 }  // namespace eigenlight

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <vector>
 
 #include "spatial/guided_filter.h"
 
@@ -10,37 +12,64 @@ namespace eigenlight {
 inline constexpr int kGuidedTile = 64;    ///< pixels on a side of what is filtered or left alone
 inline constexpr int kGuidedRadius = 32;  ///< largest: Bauszat 2011 takes 24 to 32
 inline constexpr int kMostGuides = 4;
-inline constexpr int kGuidedRoom = 32;  ///< floats behind a row that whole vectors may touch
+/// Rows, and columns, that are summed in one go.
+inline constexpr int kGuidedBlock = 8;
+inline constexpr int kBlockPixels = kGuidedBlock * kGuidedBlock;
 
-/// Most columns of a run. Halos of 2 radius on either side make narrow strips dear, rows that
-/// outgrow the second-level cache wide ones: 8 to 32 radius were tried (spatial/README.md).
+/// Most columns of a run. Halos of 2 radius on either side make narrow strips dear, wide ones leave
+/// threads without work: spatial/README.md.
 [[nodiscard]] constexpr int guided_strip(int radius) {
   return std::max(2 * kGuidedTile, 16 * radius / kGuidedTile * kGuidedTile);
 }
 
+/// Values of a pixel that sums are made of: w, guides I_i, w N_c.
+[[nodiscard]] constexpr int guided_values(int n) { return 1 + n + 3; }
 /// Sums over a window that the fit of n guides needs: w; w I_i; w N_c; w I_i I_j, i <= j; w I_i
 /// N_c.
 [[nodiscard]] constexpr int guided_sums(int n) { return 1 + n + 3 + n * (n + 1) / 2 + 3 * n; }
 /// What a fit leaves: a and b of each channel, and 1 if the window counts.
 [[nodiscard]] constexpr int guided_fits(int n) { return 3 * (n + 1) + 1; }
 
-/// Sums over the last `terms` rows of some quantities, for a run of rows. Blocks of `terms` rows
-/// begin at row numbers that they divide, so that sums have the same bits wherever a run begins.
-struct ColumnSums {
-  ColumnSums(int terms_, int quantities_, int width)
-      : terms(terms_),
-        quantities(quantities_),
-        slots({width, terms * quantities}),
-        prefix({width, quantities}),
-        sum({width, quantities}) {}
+[[nodiscard]] constexpr int round_up_to_blocks(int n) {
+  return (n + kGuidedBlock - 1) / kGuidedBlock * kGuidedBlock;
+}
 
-  int terms, quantities;
-  Plane<float> slots;   // of row y % terms; from the block before, below this row: what follows it
-  Plane<float> prefix;  // sums of the block so far
-  Plane<float> sum;     // of the last `terms` rows
+/// Sums of 8, 16 and 32 rows that begin at multiples of these are kept, so that wide windows are
+/// made of few: rows of a ring come in multiples of the last.
+inline constexpr int kSumLevels = 2;
+inline constexpr int kLongestSum = kGuidedBlock << (kSumLevels - 1);
+
+/// Position in the ring of row or column `y`, any integer.
+[[nodiscard]] constexpr int ring_slot(int y, int slots) { return (y % slots + slots) % slots; }
+/// Position among the sums in a ring of the one of (8 << level) rows from y on.
+[[nodiscard]] constexpr int ring_sum(int y, int level, int slots) {
+  int first = 0;
+  for (int below = 0; below < level; ++below) first += slots / (kGuidedBlock << below);
+  return first + ring_slot(y, slots) / (kGuidedBlock << level);
+}
+/// How many these are, of all levels.
+[[nodiscard]] constexpr int ring_sums(int slots) { return ring_sum(0, kSumLevels, slots); }
+
+/// How far apart rows of a ring lie, and sums of rows.
+struct GuidedRing {
+  int slots;
+  std::size_t row, sum;
+};
+/// Where the summands of eight windows of span + 1 rows lie in a ring of rows: window g is of the
+/// rows from base - span + g to base + g. All have the rows [base - span + 8, base) in common, of
+/// which as many as possible are summed up already.
+struct GuidedWindow {
+  /// Sums of rows before `first` are left out: there are none.
+  GuidedWindow(int base, int span, const GuidedRing& ring, int first);
+
+  int span;
+  std::array<std::size_t, 2 * kGuidedRadius + kGuidedBlock> at{};    ///< of row base - span + i
+  std::array<std::size_t, 2 * kGuidedRadius / kGuidedBlock> sums{};  ///< within the common rows
+  std::array<std::size_t, kGuidedBlock> rest{};                      ///< common rows besides
+  int sum_count = 0, rest_count = 0;
 };
 
-/// Rows as they come, then as they count. Columns begin 2 radius left of the run.
+/// Rows of the image as they come, then as they count. Columns begin `lead` left of the run.
 struct GuidedRow {
   explicit GuidedRow(int width)
       : normal(make_planes<3>({width, 1})),
@@ -49,32 +78,45 @@ struct GuidedRow {
         weight({width, 1}),
         id({width, 1}) {}
 
-  Planes<3> normal, signal;  // signal: afterwards w N, 0 where it does not count
+  Planes<3> normal, signal;
   Plane<float> depth, weight;
   Plane<std::uint32_t> id;
 };
 
+/// Rings of the last rows, and within a block of rows of the last columns: as many as a window
+/// reaches back, rounded up to blocks, and the present block. What belongs to a block lies
+/// together.
 struct GuidedScratch {
-  GuidedScratch(int radius, int guide_count)
-      : width(guided_strip(radius) + 4 * radius + kGuidedRoom),
-        row(width),
-        guides({width, (2 * radius + 1) * (guide_count + 1)}),
-        weighted_guide({width, guide_count}),
-        partial({width, 1}),
-        along({width, 1}),
-        windows(2 * radius + 1, guided_sums(guide_count), width),
-        fit({width, guided_fits(guide_count)}),
-        fits(2 * radius + 1, guided_fits(guide_count), width) {}
+  GuidedScratch(int radius, int guide_count);
 
-  int width;
+  int span, lead;  ///< 2 radius, and that in whole blocks
+  int slots;       ///< of a ring
+  int blocks;      ///< of columns, those left of the run among them
+
   GuidedRow row;
-  Plane<float> guides;  // guides, then 1 for surface, of row y % (2 radius + 1)
-  Plane<float> weighted_guide;
-  Plane<float> partial,
-      along;  // a quantity, what doubling leaves of it, and its sums along the row
-  ColumnSums windows;
-  Plane<float> fit;  // of one row of windows
-  ColumnSums fits;
+  Plane<float> values;  ///< row block * slots + slot: 8 columns of each value
+  Plane<float>
+      value_sums;        ///< row block * ring_sums() + ring_sum(): 8 columns of each sum over rows
+  Plane<float> surface;  ///< row slot: 1 where there is surface
+
+  Plane<float> columns;      ///< row sum: slots columns of 8 rows, summed over rows
+  Plane<float> column_sums;  ///< row sum: ring_sums() of these over columns
+  Plane<float> window;       ///< row sum: 8 columns of 8 rows, of windows
+  Plane<float> centers;      ///< 8 columns of 8 rows: `surface` at the centers of these
+
+  Plane<float> fits;      ///< row fit: slots columns of 8 rows
+  Plane<float> fit_sums;  ///< row fit: ring_sums() of these over columns
+
+  Plane<float> fit_rows;  ///< row block * slots + slot: 8 columns of each fit, summed over columns
+  Plane<float> fit_row_sums;  ///< row block * ring_sums() + ring_sum(): over rows
+  Plane<float> fitted;        ///< row fit: 8 rows of 8 columns, summed over rows, too
+
+  /// Windows by the block of the ring that they end in: of `values`, where `first_windows` are for
+  /// the first `lead` rows of the image; of `columns` and `fit_rows`; and
+  /// of `fits` those that end lead - span columns further left, so that what is filtered begins
+  /// with a block.
+  std::vector<GuidedWindow> first_windows, value_windows, column_windows, fit_windows,
+      fit_row_windows;
 };
 
 struct GuidedWork {
@@ -83,16 +125,23 @@ struct GuidedWork {
   float log_depth;  ///< taken off every log depth, so that covariances keep their digits in float
 };
 
-/// Row y of the columns [left, left + width), zeros outside the image: fills scratch.row and the
-/// guides of the row.
+/// Columns [left, left + width) of the image and beyond it; width is of whole blocks.
 struct GuidedColumns {
   int left, width;
 };
-void guided_load_row(const GuidedWork& work, const GuidedColumns& columns, int y,
-                     GuidedScratch& scratch);
+/// Puts row y, zeros outside the image, into its slot of s.values and s.surface.
+void guided_load_row(const GuidedWork& work, const GuidedColumns& columns, int y, GuidedScratch& s);
 
-/// Position of a row in its block of `terms`.
-[[nodiscard]] constexpr int block_slot(int y, int terms) { return (y % terms + terms) % terms; }
+/// Fits the windows of s.window into columns [column, column + 8) of s.fits.
+void guided_fit(const GuidedOptions& options, int column, GuidedScratch& s);
+
+/// A block of 8 x 8 pixels: its column among those of s.values, where it is in the image, and which
+/// of its rows are wanted.
+struct GuidedOutput {
+  int block, x, y, first_row, last_row;
+};
+/// The coefficients averaged over the windows that hold each pixel, applied to its guides.
+void guided_apply(const GuidedOutput& where, const GuidedScratch& s, Planes<3>& out);
 
 void guided_run(const GuidedWork& work, const Tile& run, GuidedScratch& scratch, Planes<3>& out);
 

@@ -1,3 +1,4 @@
+// The sums of the guided filter, by blocks of 8 x 8 pixels.
 #include <algorithm>
 
 #include "frame/float_traps.h"
@@ -5,74 +6,96 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "spatial/guided_filter_simd.cpp"
+// Not in alphabetical order: foreach_target.h has to come first.
+// clang-format off
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+#include <hwy/cache_control.h>
+// clang-format on
 
 HWY_BEFORE_NAMESPACE();
 namespace eigenlight::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using F = hn::CappedTag<float, 16>;
+using F = hn::CappedTag<float, kGuidedBlock>;
 using VF = hn::Vec<F>;
 
 int Lanes() { return static_cast<int>(hn::Lanes(F())); }
 
-// sum[i] = data[i] + data[i + 1] + ... of `terms` terms, for i in [0, count), from partial sums of
-// 1, 2, 4, ... terms that replace `data`. Reads whole vectors.
-void SumAlong(int count, int terms, float* HWY_RESTRICT data, float* HWY_RESTRICT sum) {
+// Lane i of the eight vectors to the eight floats at to + i * stride, for all lanes.
+HWY_INLINE void StoreTransposed(const VF (&v)[kGuidedBlock], std::size_t stride,
+                                float* HWY_RESTRICT to) {
+#if HWY_TARGET == HWY_SCALAR
+  for (int i = 0; i < kGuidedBlock; ++i) to[i] = v[i].raw;
+  static_cast<void>(stride);
+#else
   const F d;
-  int done = 0;
-  for (int step = 1; step <= terms; step *= 2) {
-    if ((terms & step) != 0) {
-      const float* from = data + done;
-      for (int i = 0; i < count; i += Lanes()) {
-        const VF before = done == 0 ? hn::Zero(d) : hn::LoadU(d, sum + i);
-        hn::StoreU(hn::Add(before, hn::LoadU(d, from + i)), d, sum + i);
-      }
-      done += step;
-    }
-    if (2 * step > terms) break;
-    // Later steps look no further than the last term of the last sum.
-    const int reach = count + terms - 2 * step;
-    for (int i = 0; i < reach; i += Lanes()) {
-      hn::StoreU(hn::Add(hn::LoadU(d, data + i), hn::LoadU(d, data + i + step)), d, data + i);
+  const hn::Repartition<std::uint64_t, F> pairs;
+  // Of each 128 bits: column[half][i] is lane i of the vectors 4 half to 4 half + 3.
+  VF column[2][4];
+  for (int half = 0; half < 2; ++half) {
+    const VF* rows = v + 4 * half;
+    const auto low0 = hn::BitCast(pairs, hn::InterleaveLower(d, rows[0], rows[1]));
+    const auto low1 = hn::BitCast(pairs, hn::InterleaveLower(d, rows[2], rows[3]));
+    const auto high0 = hn::BitCast(pairs, hn::InterleaveUpper(d, rows[0], rows[1]));
+    const auto high1 = hn::BitCast(pairs, hn::InterleaveUpper(d, rows[2], rows[3]));
+    column[half][0] = hn::BitCast(d, hn::InterleaveLower(pairs, low0, low1));
+    column[half][1] = hn::BitCast(d, hn::InterleaveUpper(pairs, low0, low1));
+    column[half][2] = hn::BitCast(d, hn::InterleaveLower(pairs, high0, high1));
+    column[half][3] = hn::BitCast(d, hn::InterleaveUpper(pairs, high0, high1));
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (Lanes() == 4) {
+      hn::Store(column[0][i], d, to + i * stride);
+      hn::Store(column[1][i], d, to + i * stride + 4);
+    } else {
+      hn::Store(hn::ConcatLowerLower(d, column[1][i], column[0][i]), d, to + i * stride);
+      hn::Store(hn::ConcatUpperUpper(d, column[1][i], column[0][i]), d, to + (i + 4) * stride);
     }
   }
+#endif
 }
 
-void Restart(ColumnSums& sums) {
-  sums.slots.fill(0.0f);
-  sums.prefix.fill(0.0f);
-}
-
-// Takes a row of one quantity in; leaves the sums over the last `terms` rows in sums.sum.
-void Push(int quantity, int slot, int count, const float* HWY_RESTRICT row, ColumnSums& sums) {
-  const F d;
-  float* HWY_RESTRICT here = sums.slots.row(slot * sums.quantities + quantity);
-  float* HWY_RESTRICT prefix = sums.prefix.row(quantity);
-  float* HWY_RESTRICT sum = sums.sum.row(quantity);
-  const bool is_last = slot + 1 == sums.terms;
-  const float* rest = is_last ? here : sums.slots.row((slot + 1) * sums.quantities + quantity);
-  for (int x = 0; x < count; x += Lanes()) {
-    const VF value = hn::Load(d, row + x);
-    const VF so_far = slot == 0 ? value : hn::Add(hn::Load(d, prefix + x), value);
-    hn::Store(so_far, d, prefix + x);
-    hn::Store(is_last ? so_far : hn::Add(so_far, hn::Load(d, rest + x)), d, sum + x);
-    hn::Store(value, d, here + x);
+// The sums of eight windows, and of the eight rows that are in the last of them alone. add(sum,
+// at) adds a row to a sum, whole(at) is a sum of rows. Nothing is subtracted: a sum
+// holds no trace of what is not in its window.
+template <typename Add, typename Whole>
+HWY_INLINE VF SumWindows(const GuidedWindow& w, const Add& add, const Whole& whole,
+                         VF (&sum)[kGuidedBlock]) {
+  VF after = hn::Zero(F());
+  if (w.span < kGuidedBlock) {
+    for (int g = 0; g < kGuidedBlock; ++g) {
+      after = add(after, w.at[static_cast<std::size_t>(w.span + g)]);
+      sum[g] = hn::Zero(F());
+      for (int i = g; i <= g + w.span; ++i) sum[g] = add(sum[g], w.at[static_cast<std::size_t>(i)]);
+    }
+    return after;
   }
+  VF before = hn::Zero(F());
+  for (int i = 0; i < w.sum_count; ++i) {
+    before = hn::Add(before, whole(w.sums[static_cast<std::size_t>(i)]));
+  }
+  for (int i = 0; i < w.rest_count; ++i) before = add(before, w.rest[static_cast<std::size_t>(i)]);
+  for (int g = kGuidedBlock - 1; g >= 0; --g) {
+    sum[g] = before = add(before, w.at[static_cast<std::size_t>(g)]);
+  }
+  for (int g = 0; g < kGuidedBlock; ++g) {
+    after = add(after, w.at[static_cast<std::size_t>(w.span + g)]);
+    sum[g] = hn::Add(sum[g], after);
+  }
+  return after;
 }
 
-// At the end of a block: turns its rows into sums of each row and those that follow it.
-void Finish(int slot, ColumnSums& sums) {
-  if (slot + 1 < sums.terms) return;
-  const F d;
-  const auto count = static_cast<int>(sums.slots.stride()) * sums.quantities;
-  for (int i = sums.terms - 2; i >= 0; --i) {
-    float* HWY_RESTRICT here = sums.slots.row(i * sums.quantities);
-    const float* HWY_RESTRICT next = sums.slots.row((i + 1) * sums.quantities);
-    for (int x = 0; x < count; x += Lanes()) {
-      hn::Store(hn::Add(hn::Load(d, here + x), hn::Load(d, next + x)), d, here + x);
+// Rows and sums that SumWindows() is going to read: wide windows outgrow the second-level cache.
+void Fetch(const GuidedWindow& w, const float* rows, const float* sums, const Extent& sizes) {
+  constexpr int kLine = 16;
+  for (std::size_t g = 0; g < kGuidedBlock; ++g) {
+    for (int x = 0; x < sizes.width; x += kLine) hwy::Prefetch(rows + w.at[g] + x);
+  }
+  for (int i = 0; i < w.sum_count; ++i) {
+    for (int x = 0; x < sizes.height; x += kLine) {
+      hwy::Prefetch(sums + w.sums[static_cast<std::size_t>(i)] + x);
     }
   }
 }
@@ -82,192 +105,306 @@ template <int kN>
 class Filter {
  public:
   Filter(const GuidedWork& work, const Tile& run, GuidedScratch& scratch)
-      : work_(work), run_(run), s_(scratch), r_(work.options.radius) {
-    for (int i = 0; i < kN; ++i) {
-      epsilon_[i] = i < 3 ? work.options.epsilon_normal : work.options.epsilon_depth;
-    }
-  }
+      : work_(work),
+        run_(run),
+        s_(scratch),
+        r_(work.options.radius),
+        ahead_(s_.lead / kGuidedBlock),
+        blocks_(round_up_to_blocks(run.x1 - run.x0) / kGuidedBlock + 2 * ahead_) {}
 
   void Run(Planes<3>& out) {
-    Restart(s_.windows);
-    Restart(s_.fits);
-    const int width = run_.x1 - run_.x0, height = work_.in.weight.height();
-    // Rows above the image are the zeros that the sums start from; those below it are pushed.
-    for (int y = std::max(run_.y0 - 2 * r_, 0); y < run_.y1 + 2 * r_; ++y) {
-      if (y < height) {
-        guided_load_row(work_, {run_.x0 - 2 * r_, width + 4 * r_}, y, s_);
-        SumWindows(y, width + 2 * r_);
-      } else {
-        PushZeros(y, width + 2 * r_, s_.windows);
-      }
-      const int fitted = y - r_;
-      if (fitted < std::max(run_.y0 - r_, 0)) continue;
-      if (fitted < height) {
-        FitRow(fitted, width + 2 * r_);
-        SumFits(fitted, width);
-      } else {
-        PushZeros(fitted, width, s_.fits);
-      }
-      if (y - 2 * r_ >= run_.y0) Apply(y - 2 * r_, width, out);
+    if (run_.y0 == 0) ClearRowsAbove();
+    const GuidedColumns columns{run_.x0 - s_.lead, kGuidedBlock * blocks_};
+    for (int y = std::max(run_.y0 - s_.lead, 0); y < run_.y1 + s_.span; y += kGuidedBlock) {
+      for (int i = 0; i < kGuidedBlock; ++i) guided_load_row(work_, columns, y + i, s_);
+      RunRows(y, out);
     }
   }
 
  private:
-  // Offset of a window's first sum of w N_c, w I_i I_j, w I_i N_c.
-  static constexpr int kSignal = 1 + kN;
-  static constexpr int kSquares = kSignal + 3;
-  static constexpr int kProducts = kSquares + kN * (kN + 1) / 2;
-
-  const float* Guide(int index, int y) const {
-    return s_.guides.row(block_slot(y, s_.windows.terms) * (kN + 1) + index);
+  // No row comes into their slots before they have left all windows.
+  void ClearRowsAbove() {
+    for (int slot = s_.slots - s_.lead; slot < s_.slots; ++slot) {
+      for (int block = 0; block < blocks_; ++block) {
+        std::fill_n(s_.values.row(block * s_.slots + slot), s_.values.width(), 0.0f);
+      }
+      std::fill_n(s_.surface.row(slot), s_.surface.width(), 0.0f);
+    }
   }
 
-  void SumWindows(int y, int count) {
+  // Rows y to y + 7 are the last of their windows, whose centers are r rows further up; those of
+  // which pixels are the last center yet another r.
+  void RunRows(int y, Planes<3>& out) {
+    const int height = work_.in.weight.height();
+    const bool fits = y >= run_.y0 && y - r_ + kGuidedBlock > 0 && y - r_ < height;
+    GuidedOutput where{0, 0, y - s_.span, std::clamp(run_.y0 - (y - s_.span), 0, kGuidedBlock),
+                       std::clamp(run_.y1 - (y - s_.span), 0, kGuidedBlock)};
+    for (int block = 0; block < blocks_; ++block) {
+      if (!fits) {
+        SumBlock(block, y);
+      } else {
+        if (block + 1 < blocks_) {
+          Fetch(RowWindow(y), s_.values.row((block + 1) * s_.slots), Sums(block + 1, s_.value_sums),
+                {s_.values.width(), s_.value_sums.width()});
+        }
+        SumColumns(block, y);
+        if (block >= ahead_) FitWindows(block, y);
+      }
+      const int done = block - 2 * ahead_;
+      if (done < 0 || y < run_.y0) continue;
+      if (block + 1 < blocks_) {
+        Fetch(Window(s_.fit_row_windows, y), FitRow(done + 1, 0), Sums(done + 1, s_.fit_row_sums),
+              {s_.fit_rows.width(), s_.fit_row_sums.width()});
+      }
+      if (fits) {
+        SumFitsAlong(block - ahead_, y);
+      } else {
+        ClearFits(done, y);
+      }
+      SumFits(done, y);
+      where.block = done + ahead_;
+      where.x = run_.x0 + kGuidedBlock * done;
+      if (where.first_row < where.last_row) guided_apply(where, s_, out);
+    }
+  }
+
+  static const GuidedWindow& Window(const std::vector<GuidedWindow>& windows, int base) {
+    const int slots = kGuidedBlock * static_cast<int>(windows.size());
+    return windows[static_cast<std::size_t>(ring_slot(base, slots) / kGuidedBlock)];
+  }
+
+  // Calls visit(sum, add) for each sum of a block of columns, where add(v, row) adds what one row
+  // gives to it.
+  template <typename Visit>
+  void ForSums(const float* values, const Visit& visit) const {
     const F d;
-    const int seen = count + 2 * r_, slot = block_slot(y, s_.windows.terms);
+    const auto at = [=](int value, std::size_t row) {
+      return hn::Load(d, values + row + kGuidedBlock * value);
+    };
     int next = 0;
-    const auto sum = [&](const auto& value) {
-      float* row = s_.partial.row(0);
-      for (int x = 0; x < seen; x += Lanes()) hn::Store(value(x), d, row + x);
-      SumAlong(count, s_.windows.terms, row, s_.along.row(0));
-      Push(next++, slot, count, s_.along.row(0), s_.windows);
+    const auto plain = [&](int a) {
+      visit(next++, [=](VF sum, std::size_t row) { return hn::Add(sum, at(a, row)); });
     };
-    const auto plain = [&](const float* a) { sum([=](int x) { return hn::Load(F(), a + x); }); };
-    const auto product = [&](const float* a, const float* b) {
-      sum([=](int x) { return hn::Mul(hn::Load(F(), a + x), hn::Load(F(), b + x)); });
-    };
-    plain(s_.row.weight.row(0));
-    for (int i = 0; i < kN; ++i) plain(s_.weighted_guide.row(i));
-    for (const auto& plane : s_.row.signal) plain(plane.row(0));
-    for (int j = 0; j < kN; ++j) {
-      for (int i = 0; i <= j; ++i) product(s_.weighted_guide.row(i), Guide(j, y));
+    plain(0);
+    for (int i = 1; i <= kN; ++i) {
+      visit(next++,
+            [=](VF sum, std::size_t row) { return hn::MulAdd(at(0, row), at(i, row), sum); });
     }
-    for (int i = 0; i < kN; ++i) {
-      for (const auto& plane : s_.row.signal) product(plane.row(0), Guide(i, y));
+    for (int c = 1 + kN; c < 4 + kN; ++c) plain(c);
+    for (int j = 1; j <= kN; ++j) {
+      for (int i = 1; i <= j; ++i) {
+        visit(next++, [=](VF sum, std::size_t row) {
+          return hn::MulAdd(hn::Mul(at(0, row), at(i, row)), at(j, row), sum);
+        });
+      }
     }
-    Finish(slot, s_.windows);
+    for (int i = 1; i <= kN; ++i) {
+      for (int c = 1 + kN; c < 4 + kN; ++c) {
+        visit(next++,
+              [=](VF sum, std::size_t row) { return hn::MulAdd(at(c, row), at(i, row), sum); });
+      }
+    }
   }
 
-  void PushZeros(int y, int count, ColumnSums& sums) {
-    const int slot = block_slot(y, sums.terms);
-    s_.along.fill(0.0f);
-    for (int q = 0; q < sums.quantities; ++q) Push(q, slot, count, s_.along.row(0), sums);
-    Finish(slot, sums);
+  const GuidedWindow& RowWindow(int y) const {
+    return y < s_.lead ? s_.first_windows[static_cast<std::size_t>(y / kGuidedBlock)]
+                       : Window(s_.value_windows, y);
   }
 
-  // Cov + diag(epsilon) = L D L^T of a window, in vectors of windows.
-  struct Factors {
-    VF lower[kN][kN];  // below the diagonal
-    VF inverse[kN];    // of D
-    hn::Mask<F> sound;
+  float* Sums(int block, Plane<float>& sums) const { return sums.row(block * ring_sums(s_.slots)); }
+  // Of rows y to y + 7.
+  float* SumsOf(int block, int y, Plane<float>& sums) const {
+    return sums.row(block * ring_sums(s_.slots) + ring_sum(y, 0, s_.slots));
+  }
+
+  // Sums of more rows that are complete with that of rows y to y + 7: positions of two halves, and
+  // of their sum.
+  struct Doubling {
+    int count = 0;
+    std::array<std::array<std::size_t, 3>, kSumLevels - 1> at{};
   };
-
-  // In exact arithmetic a pivot is at least epsilon, since Cov is positive semidefinite; half of
-  // it says that rounding has won.
-  Factors Factorize(const VF (&covariance)[kN][kN]) const {
+  Doubling DoublingAt(int y, std::size_t stride) const {
+    Doubling doubling;
+    const auto at = [&](int begin, int level) {
+      return stride * static_cast<std::size_t>(ring_sum(begin, level, s_.slots));
+    };
+    const int end = y + kGuidedBlock;
+    for (int level = 1; level < kSumLevels; ++level) {
+      const int rows = kGuidedBlock << level;
+      if (ring_slot(end, rows) != 0) break;
+      doubling.at[static_cast<std::size_t>(doubling.count++)] = {
+          at(end - rows, level - 1), at(end - rows / 2, level - 1), at(end - rows, level)};
+    }
+    return doubling;
+  }
+  static void Double(const Doubling& doubling, int count, float* sums) {
     const F d;
-    Factors f;
-    f.sound = hn::Eq(hn::Zero(d), hn::Zero(d));
-    VF scaled[kN][kN];  // L D
-    for (int j = 0; j < kN; ++j) {
-      for (int i = 0; i <= j; ++i) {
-        VF v = covariance[i][j];
-        for (int m = 0; m < i; ++m) v = hn::NegMulAdd(scaled[j][m], f.lower[i][m], v);
-        if (i < j) {
-          scaled[j][i] = v;
-          f.lower[j][i] = hn::Mul(v, f.inverse[i]);
-        } else {
-          const VF pivot = hn::Add(v, hn::Set(d, epsilon_[j]));
-          f.sound = hn::And(f.sound, hn::Gt(pivot, hn::Set(d, 0.5f * epsilon_[j])));
-          f.inverse[j] = hn::Div(hn::Set(d, 1.0f), pivot);
+    for (int i = 0; i < doubling.count; ++i) {
+      const auto& [a, b, to] = doubling.at[static_cast<std::size_t>(i)];
+      for (int x = 0; x < count; x += Lanes()) {
+        hn::Store(hn::Add(hn::Load(d, sums + a + x), hn::Load(d, sums + b + x)), d, sums + to + x);
+      }
+    }
+  }
+  void DoubleRows(int block, int y, Plane<float>& sums) const {
+    Double(DoublingAt(y, sums.stride()), sums.width(), Sums(block, sums));
+  }
+
+  // Rows y to y + 7 of a block, each sum over all of them: what windows have of them later.
+  void SumBlock(int block, int y) {
+    float* sums = SumsOf(block, y, s_.value_sums);
+    const auto row = s_.values.stride() * static_cast<std::size_t>(ring_slot(y, s_.slots));
+    for (int x = 0; x < kGuidedBlock; x += Lanes()) {
+      ForSums(s_.values.row(block * s_.slots) + x, [&](int sum, const auto& add) {
+        VF all = hn::Zero(F());
+        for (std::size_t i = 0; i < kGuidedBlock; ++i) {
+          all = add(all, row + i * s_.values.stride());
+        }
+        hn::Store(all, F(), sums + kGuidedBlock * sum + x);
+      });
+    }
+    DoubleRows(block, y, s_.value_sums);
+  }
+
+  // Sums down windows that end in rows y to y + 7, into the ring of columns.
+  void SumColumns(int block, int y) {
+    const F d;
+    const GuidedWindow& window = RowWindow(y);
+    float* here = SumsOf(block, y, s_.value_sums);
+    const int column = ring_slot(kGuidedBlock * block, s_.slots);
+    for (int x = 0; x < kGuidedBlock; x += Lanes()) {
+      const float* sums = Sums(block, s_.value_sums) + x;
+      ForSums(s_.values.row(block * s_.slots) + x, [&](int sum, const auto& add) {
+        const auto whole = [&](std::size_t at) {
+          return hn::Load(d, sums + at + kGuidedBlock * sum);
+        };
+        VF down[kGuidedBlock];
+        hn::Store(SumWindows(window, add, whole, down), d, here + kGuidedBlock * sum + x);
+        StoreTransposed(down, kGuidedBlock, s_.columns.row(sum) + kGuidedBlock * (column + x));
+      });
+    }
+    DoubleRows(block, y, s_.value_sums);
+    SumEights(kGuidedBlock * block, s_.columns, s_.column_sums);
+  }
+
+  // Sums of eight columns of each quantity, and of more.
+  void SumEights(int column, const Plane<float>& columns, Plane<float>& sums) const {
+    const F d;
+    const int slot = ring_slot(column, s_.slots), sum = ring_sum(column, 0, s_.slots);
+    const Doubling doubling = DoublingAt(column, kGuidedBlock);
+    for (int quantity = 0; quantity < columns.height(); ++quantity) {
+      const float* from = columns.row(quantity) + kGuidedBlock * slot;
+      for (int row = 0; row < kGuidedBlock; row += Lanes()) {
+        VF all = hn::Load(d, from + row);
+        for (int i = 1; i < kGuidedBlock; ++i) {
+          all = hn::Add(all, hn::Load(d, from + kGuidedBlock * i + row));
+        }
+        hn::Store(all, d, sums.row(quantity) + kGuidedBlock * sum + row);
+      }
+      Double(doubling, kGuidedBlock, sums.row(quantity));
+    }
+  }
+
+  // Eight rows of the sums along windows of one quantity; store(row, sums) takes some of the rows.
+  template <typename Store>
+  static HWY_INLINE void SumAlong(const GuidedWindow& window, const float* columns,
+                                  const float* sums, const Store& store) {
+    const F d;
+    for (int row = 0; row < kGuidedBlock; row += Lanes()) {
+      const auto add = [&](VF sum, std::size_t at) {
+        return hn::Add(sum, hn::Load(d, columns + at + row));
+      };
+      const auto whole = [&](std::size_t at) { return hn::Load(d, sums + at + row); };
+      VF along[kGuidedBlock];
+      SumWindows(window, add, whole, along);
+      store(row, along);
+    }
+  }
+
+  // Windows that end in columns of `block` and rows y to y + 7.
+  void FitWindows(int block, int y) {
+    const F d;
+    const int column = kGuidedBlock * block;
+    const GuidedWindow& window = Window(s_.column_windows, column);
+    for (int sum = 0; sum < s_.columns.height(); ++sum) {
+      float* to = s_.window.row(sum);
+      SumAlong(window, s_.columns.row(sum), s_.column_sums.row(sum),
+               [&](int row, const VF(&along)[kGuidedBlock]) {
+                 for (int i = 0; i < kGuidedBlock; ++i) {
+                   hn::Store(along[i], d, to + kGuidedBlock * i + row);
+                 }
+               });
+    }
+    for (int x = 0; x < kGuidedBlock; x += Lanes()) {
+      VF centers[kGuidedBlock];
+      for (int i = 0; i < kGuidedBlock; ++i) {
+        centers[i] =
+            hn::LoadU(d, s_.surface.row(ring_slot(y - r_ + i, s_.slots)) + column - r_ + x);
+      }
+      StoreTransposed(centers, kGuidedBlock, s_.centers.row(0) + kGuidedBlock * x);
+    }
+    guided_fit(work_.options, ring_slot(column - s_.lead, s_.slots), s_);
+    SumEights(column - s_.lead, s_.fits, s_.fit_sums);
+  }
+
+  float* FitRow(int block, int slot) { return s_.fit_rows.row(block * s_.slots + slot); }
+
+  // Sums along the fits that end in a block of columns `ahead_` further on, or what is left of
+  // them.
+  void SumFitsAlong(int block, int y) {
+    const GuidedWindow& window = Window(s_.fit_windows, kGuidedBlock * block);
+    float* to = FitRow(block - ahead_, ring_slot(y, s_.slots));
+    for (int fit = 0; fit < s_.fits.height(); ++fit) {
+      SumAlong(window, s_.fits.row(fit), s_.fit_sums.row(fit),
+               [&](int row, const VF(&along)[kGuidedBlock]) {
+                 const std::size_t stride = s_.fit_rows.stride();
+                 StoreTransposedRows(along, row, stride, to + kGuidedBlock * fit);
+               });
+    }
+  }
+
+  // Columns of some rows to those rows.
+  static void StoreTransposedRows(const VF (&columns)[kGuidedBlock], int row, std::size_t stride,
+                                  float* to) {
+    StoreTransposed(columns, stride, to + stride * static_cast<std::size_t>(row));
+  }
+
+  void ClearFits(int block, int y) {
+    for (int i = 0; i < kGuidedBlock; ++i) {
+      std::fill_n(FitRow(block, ring_slot(y, s_.slots) + i), s_.fit_rows.width(), 0.0f);
+    }
+  }
+
+  // Sums of fits down windows that end in rows y to y + 7.
+  void SumFits(int block, int y) {
+    const F d;
+    const GuidedWindow& window = Window(s_.fit_row_windows, y);
+    float* here = SumsOf(block, y, s_.fit_row_sums);
+    for (int fit = 0; fit < s_.fits.height(); ++fit) {
+      for (int x = 0; x < kGuidedBlock; x += Lanes()) {
+        const int offset = kGuidedBlock * fit + x;
+        const float* rows = FitRow(block, 0) + offset;
+        const float* sums = Sums(block, s_.fit_row_sums) + offset;
+        const auto add = [=](VF sum, std::size_t at) {
+          return hn::Add(sum, hn::Load(d, rows + at));
+        };
+        const auto whole = [=](std::size_t at) { return hn::Load(d, sums + at); };
+        VF down[kGuidedBlock];
+        hn::Store(SumWindows(window, add, whole, down), d, here + offset);
+        for (int i = 0; i < kGuidedBlock; ++i) {
+          hn::Store(down[i], d, s_.fitted.row(fit) + kGuidedBlock * i + x);
         }
       }
     }
-    return f;
-  }
-
-  static void Solve(const Factors& f, VF (&x)[kN]) {
-    for (int j = 1; j < kN; ++j) {
-      for (int i = 0; i < j; ++i) x[j] = hn::NegMulAdd(f.lower[j][i], x[i], x[j]);
-    }
-    for (int j = 0; j < kN; ++j) x[j] = hn::Mul(x[j], f.inverse[j]);
-    for (int j = kN - 2; j >= 0; --j) {
-      for (int i = j + 1; i < kN; ++i) x[j] = hn::NegMulAdd(f.lower[i][j], x[i], x[j]);
-    }
-  }
-
-  // Fits the windows around the pixels of row y.
-  void FitRow(int y, int count) {
-    for (int x = 0; x < count; x += Lanes()) {
-      FitWindows(hn::LoadU(F(), Guide(kN, y) + x + r_), x);
-    }
-  }
-
-  void FitWindows(VF surface, int x) {
-    const F d;
-    const auto sum = [&](int index) { return hn::Load(d, s_.windows.sum.row(index) + x); };
-    const auto store = [&](VF v, int index) { hn::Store(v, d, s_.fit.row(index) + x); };
-    const VF weight = sum(0);
-    const auto some = hn::And(hn::Gt(weight, hn::Zero(d)), hn::Gt(surface, hn::Zero(d)));
-    const VF scale = hn::IfThenElseZero(some, hn::Div(hn::Set(d, 1.0f), weight));
-    VF mean[kN], covariance[kN][kN];
-    for (int i = 0; i < kN; ++i) mean[i] = hn::Mul(scale, sum(1 + i));
-    for (int j = 0, index = kSquares; j < kN; ++j) {
-      for (int i = 0; i <= j; ++i) {
-        covariance[i][j] = hn::MulSub(scale, sum(index++), hn::Mul(mean[i], mean[j]));
-      }
-    }
-    const Factors factors = Factorize(covariance);
-    const auto keep = hn::And(some, factors.sound);
-    for (int c = 0; c < 3; ++c) {
-      const VF signal = hn::Mul(scale, sum(kSignal + c));
-      VF slope[kN], offset = signal;
-      for (int i = 0; i < kN; ++i) {
-        slope[i] = hn::MulSub(scale, sum(kProducts + 3 * i + c), hn::Mul(mean[i], signal));
-      }
-      Solve(factors, slope);
-      for (int i = 0; i < kN; ++i) {
-        const VF a = hn::IfThenElseZero(keep, slope[i]);
-        offset = hn::NegMulAdd(a, mean[i], offset);
-        store(a, (kN + 1) * c + i);
-      }
-      store(hn::IfThenElseZero(some, offset), (kN + 1) * c + kN);
-    }
-    store(hn::IfThenElseZero(some, hn::Set(d, 1.0f)), 3 * (kN + 1));
-  }
-
-  void SumFits(int y, int count) {
-    const int slot = block_slot(y, s_.fits.terms);
-    for (int index = 0; index < s_.fits.quantities; ++index) {
-      SumAlong(count, s_.fits.terms, s_.fit.row(index), s_.along.row(0));
-      Push(index, slot, count, s_.along.row(0), s_.fits);
-    }
-    Finish(slot, s_.fits);
-  }
-
-  // The coefficients averaged over the windows that hold each pixel, applied to its guides.
-  void Apply(int y, int count, Planes<3>& out) {
-    const F d;
-    for (int x = 0; x < count; x += Lanes()) {
-      const auto fit = [&](int index) { return hn::Load(d, s_.fits.sum.row(index) + x); };
-      const auto guide = [&](int index) { return hn::LoadU(d, Guide(index, y) + x + 2 * r_); };
-      const VF windows = fit(3 * (kN + 1));
-      const auto some = hn::And(hn::Gt(windows, hn::Zero(d)), hn::Gt(guide(kN), hn::Zero(d)));
-      for (int c = 0; c < 3; ++c) {
-        VF v = fit((kN + 1) * c + kN);
-        for (int i = 0; i < kN; ++i) v = hn::MulAdd(fit((kN + 1) * c + i), guide(i), v);
-        // Whole vectors end with the run or in the padding of the row.
-        hn::StoreU(hn::IfThenElseZero(some, hn::Div(v, windows)), d,
-                   out[static_cast<std::size_t>(c)].at(run_.x0 + x, y));
-      }
-    }
+    DoubleRows(block, y, s_.fit_row_sums);
   }
 
   const GuidedWork& work_;
   const Tile& run_;
   GuidedScratch& s_;
   int r_;
-  float epsilon_[kN];
+  int ahead_;   // blocks from a pixel's own to the last of the windows around it
+  int blocks_;  // of columns
 };
 
 void GuidedRun(const GuidedWork& work, const Tile& run, GuidedScratch& s, Planes<3>& out) {

@@ -20,14 +20,13 @@ namespace eigenlight::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using F = hn::CappedTag<float, 16>;
+using F = hn::CappedTag<float, kGuidedBlock>;
 using VF = hn::Vec<F>;
 
-// One row of a plane, zero outside the image and in the room behind the row.
+// One row of a plane, zero outside the image.
 template <typename T>
 void CopyRow(const Plane<T>& plane, const GuidedColumns& columns, int y, Plane<T>& to) {
-  std::fill_n(to.row(0), to.width(), T{0});
-  if (y < 0 || y >= plane.height()) return;
+  std::fill_n(to.row(0), columns.width, T{0});
   const int x0 = std::max(columns.left, 0);
   const int x1 = std::min(columns.left + columns.width, plane.width());
   if (x0 >= x1) return;
@@ -74,30 +73,42 @@ VF GuideAt(const GuidedWork& work, const GuidedRow& row, int index, int x) {
   return hn::Sub(hn::Log(d, depth), hn::Set(d, work.log_depth));
 }
 
-// Turns a row of raw values into guides, weights and weighted signals; what must not count is 0.
+// Turns a row of raw values into weights, guides and weighted signals; what must not count is 0.
 void MaskRow(const GuidedWork& work, int width, int y, GuidedScratch& s) {
   const F d;
-  const int guides = s.weighted_guide.height();
-  const int first = block_slot(y, s.windows.terms) * (guides + 1);
+  const auto guides = static_cast<int>(work.options.guides);
+  const int slot = ring_slot(y, s.slots);
   for (int x = 0; x < width; x += static_cast<int>(hn::Lanes(d))) {
+    float* to = s.values.row(x / kGuidedBlock * s.slots + slot) + x % kGuidedBlock;
+    const auto put = [&](VF value) {
+      hn::Store(value, d, to);
+      to += kGuidedBlock;
+    };
     const RowMasks masks = MasksAt(s.row, x);
     const VF weight = hn::IfThenElseZero(masks.used, hn::Load(d, s.row.weight.row(0) + x));
+    put(weight);
     for (int i = 0; i < guides; ++i) {
-      const VF guide = hn::IfThenElseZero(masks.surface, GuideAt(work, s.row, i, x));
-      hn::Store(guide, d, s.guides.row(first + i) + x);
-      hn::Store(hn::Mul(guide, weight), d, s.weighted_guide.row(i) + x);
+      put(hn::IfThenElseZero(masks.surface, GuideAt(work, s.row, i, x)));
     }
-    hn::Store(hn::IfThenElseZero(masks.surface, hn::Set(d, 1.0f)), d,
-              s.guides.row(first + guides) + x);
-    for (auto& plane : s.row.signal) {
+    for (const auto& plane : s.row.signal) {
       const VF signal = hn::IfThenElseZero(masks.used, hn::Load(d, plane.row(0) + x));
-      hn::Store(hn::Mul(weight, signal), d, plane.row(0) + x);
+      put(hn::Mul(weight, signal));
     }
-    hn::Store(weight, d, s.row.weight.row(0) + x);
+    hn::Store(hn::IfThenElseZero(masks.surface, hn::Set(d, 1.0f)), d, s.surface.row(slot) + x);
   }
 }
 
+void ClearRow(int width, int y, GuidedScratch& s) {
+  const int slot = ring_slot(y, s.slots);
+  for (int block = 0; block < width / kGuidedBlock; ++block) {
+    float* row = s.values.row(block * s.slots + slot);
+    std::fill_n(row, s.values.width(), 0.0f);
+  }
+  std::fill_n(s.surface.row(slot), width, 0.0f);
+}
+
 void LoadRow(const GuidedWork& work, const GuidedColumns& columns, int y, GuidedScratch& s) {
+  if (y < 0 || y >= work.in.weight.height()) return ClearRow(columns.width, y, s);
   const GBuffer& surface = work.in.guides.surface;
   CopyRow(surface.id, columns, y, s.row.id);
   CopyRow(surface.depth, columns, y, s.row.depth);

@@ -1,0 +1,59 @@
+#include "spatial/guided_filter_kernel.h"
+
+namespace eigenlight {
+
+GuidedWindow::GuidedWindow(int base, int span_, const GuidedRing& ring, int first) : span(span_) {
+  const auto slot = [&](int y) { return static_cast<std::size_t>(ring_slot(y, ring.slots)); };
+  for (int i = 0; i < span + kGuidedBlock; ++i) {
+    at[static_cast<std::size_t>(i)] = ring.row * slot(base - span + i);
+  }
+  for (int y = base - span + kGuidedBlock; y < base;) {
+    int level = kSumLevels - 1;
+    const auto fits = [&](int rows) { return ring_slot(y, rows) == 0 && y + rows <= base; };
+    while (level >= 0 && !fits(kGuidedBlock << level)) --level;
+    if (level < 0) {
+      rest[static_cast<std::size_t>(rest_count++)] = ring.row * slot(y);
+      ++y;
+      continue;
+    }
+    if (y >= first) {
+      sums[static_cast<std::size_t>(sum_count++)] =
+          ring.sum * static_cast<std::size_t>(ring_sum(y, level, ring.slots));
+    }
+    y += kGuidedBlock << level;
+  }
+}
+
+GuidedScratch::GuidedScratch(int radius, int guide_count)
+    : span(2 * radius),
+      lead(round_up_to_blocks(span)),
+      slots((lead + kLongestSum) / kLongestSum * kLongestSum),
+      blocks((guided_strip(radius) + 2 * lead) / kGuidedBlock),
+      row(kGuidedBlock * blocks),
+      values({kGuidedBlock * guided_values(guide_count), blocks * slots}),
+      value_sums({kGuidedBlock * guided_sums(guide_count), blocks * ring_sums(slots)}),
+      surface({kGuidedBlock * blocks, slots}),
+      columns({kGuidedBlock * slots, guided_sums(guide_count)}),
+      column_sums({kGuidedBlock * ring_sums(slots), guided_sums(guide_count)}),
+      window({kBlockPixels, guided_sums(guide_count)}),
+      centers({kBlockPixels, 1}),
+      fits({kGuidedBlock * slots, guided_fits(guide_count)}),
+      fit_sums({kGuidedBlock * ring_sums(slots), guided_fits(guide_count)}),
+      fit_rows({kGuidedBlock * guided_fits(guide_count), blocks * slots}),
+      fit_row_sums({kGuidedBlock * guided_fits(guide_count), blocks * ring_sums(slots)}),
+      fitted({kBlockPixels, guided_fits(guide_count)}) {
+  const GuidedRing of_values{slots, values.stride(), value_sums.stride()};
+  const GuidedRing of_columns{slots, kGuidedBlock, kGuidedBlock};
+  const GuidedRing of_fits{slots, fit_rows.stride(), fit_row_sums.stride()};
+  for (int base = 0; base < lead; base += kGuidedBlock) {
+    first_windows.emplace_back(base, span, of_values, 0);
+  }
+  for (int base = 0; base < slots; base += kGuidedBlock) {
+    value_windows.emplace_back(base, span, of_values, base - slots);
+    column_windows.emplace_back(base, span, of_columns, base - slots);
+    fit_windows.emplace_back(base + span - lead, span, of_columns, base - slots);
+    fit_row_windows.emplace_back(base, span, of_fits, base - slots);
+  }
+}
+
+}  // namespace eigenlight
