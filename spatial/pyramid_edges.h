@@ -65,8 +65,9 @@ struct ReflectionEdge {
   static constexpr int kAttributes = 5;
   static constexpr bool kKeepsMajor = true;
 
-  /// blur_radius is sigma_alpha, the radius at roughness 1; gamma 1, as in section 5.1.
-  GlobalIlluminationEdge geometry{.gamma_scale = 1.0f};
+  /// blur_radius is sigma_alpha, the radius at roughness 1. The paper's untrained filter has
+  /// gamma 1.
+  GlobalIlluminationEdge geometry{.gamma_scale = 0.15f};
 
   [[nodiscard]] static bool exists(const float* a) { return a[3] > 0.0f; }
   [[nodiscard]] float energy(const float* p, const float* q, float d2) const {
@@ -110,13 +111,14 @@ struct ParticleEdge {
 
   float depth_scale = 1.0f;   ///< >= 0, one over squared units of depth
   float blur_radius = 16.0f;  ///< [0, 64] pixels
+  float gamma_scale = 0.4f;   ///< [0, 1]; the paper's untrained filter has 1
 
   [[nodiscard]] static bool exists(const float* a) { return a[0] > 0.0f && std::isfinite(a[0]); }
   [[nodiscard]] float energy(const float* p, const float* q, float) const {
     return depth_scale * p[0] * std::abs(p[0] - q[0]);
   }
   [[nodiscard]] float radius(const float*) const { return blur_radius; }
-  [[nodiscard]] static float gamma() { return 1.0f; }
+  [[nodiscard]] float gamma() const { return gamma_scale; }
 };
 
 /// Colors as their own guide, exp(-|A_p - A_q|^2 / (2 sigma_r^2)): what section 3.3.2 trains on.

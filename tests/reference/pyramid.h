@@ -279,7 +279,8 @@ inline Range<1> particle_range(const ParticleEdge& edge) {
             return std::exp(-static_cast<double>(edge.depth_scale) * p[0] * std::abs(p[0] - q[0]));
           },
           [](const A& a) { return a[0] > 0.0 && std::isfinite(a[0]); },
-          [edge](const A&) { return static_cast<double>(edge.blur_radius); }};
+          [edge](const A&) { return static_cast<double>(edge.blur_radius); }, true,
+          static_cast<double>(edge.gamma_scale)};
 }
 
 }  // namespace eigenlight::reference

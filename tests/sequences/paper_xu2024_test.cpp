@@ -122,7 +122,7 @@ TEST(PaperXu2024, ReportsEveryClaim) {
   }
   EXPECT_EQ(report.sections[0].tables[0].rows.size(), 4u);
   EXPECT_EQ(report.sections[1].tables[0].rows.size(), 3u);
-  EXPECT_EQ(report.sections[2].tables[0].rows.size(), 5u);
+  EXPECT_EQ(report.sections[2].tables[0].rows.size(), 7u);
   EXPECT_EQ(report.sections[3].plots[0].series[0].points.size(), 7u);
   for (const TableRow& row : report.sections[0].tables[0].rows) {
     EXPECT_GT(std::get<double>(row.cells[1]), 15.0) << row.name;
