@@ -11,6 +11,7 @@
 #include "sequences/compare_command.h"
 #include "sequences/compare_options.h"
 #include "sequences/evaluate_command.h"
+#include "sequences/judge_pyramid.h"
 #include "sequences/list_commands.h"
 #include "sequences/render_command.h"
 #include "sequences/stress_command.h"
@@ -99,6 +100,7 @@ int parse_and_run(std::span<const char* const> args, const Console& console) {
   methods->add_flag("--parts", lists_parts, "List the parts that --without can turn off");
   add_evaluate_command(app, console.out);
   add_train_pyramid_command(app, console);
+  add_judge_pyramid_command(app, console);
   CompareSettings compare_settings;
   const CLI::App* compare = add_compare_command(app, compare_settings);
   StressSettings stress_settings;

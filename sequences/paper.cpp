@@ -84,6 +84,7 @@ std::string_view to_text(Verdict verdict) {
 const std::vector<Paper>& papers() {
   static const std::vector<Paper> kPapers{
       chen2012(),
+      xu2024(),
   };
   return kPapers;
 }

@@ -33,6 +33,7 @@ class PaperScene {
                                   std::uint32_t seed = 0) const;
   /// exposure * albedo * light: what is shown, linear and not clamped. 0 without surface.
   [[nodiscard]] Planes<3> shown(const Frame& frame, const Planes<3>& light) const;
+  [[nodiscard]] float exposure() const { return scene_.exposure; }
 
  private:
   Scene scene_;

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <stdexcept>
 
+#include "frame/random.h"
 #include "render/builtin_scenes.h"
 #include "render/live_source.h"
 #include "sequences/exr_io.h"
@@ -18,8 +20,9 @@ namespace {
 constexpr int kSmallSide = 128, kLargeSide = 192;
 constexpr int kLargestSmallRadius = 16;
 constexpr std::array<float, 3> kColorSigmas{0.05f, 0.1f, 0.2f};
-// Frame of the flythrough that is rendered; any would do.
-constexpr int kFrame = 20;
+// Samples a pixel of noisy painted pictures.
+constexpr std::array<int, 2> kPaintedSpp{1, 4};
+constexpr int kNoisyEvery = 3;
 // Sides of a rendered frame, in sides of the part that is taken.
 constexpr int kFrameParts = 3;
 
@@ -43,7 +46,27 @@ Planes<3> read_image(const std::string& name) {
   return is_ldr_name(name) ? read_ldr_image(name) : ExrReader(name).read_planes<3>("");
 }
 
-PyramidExample color_example(const Planes<3>& image, float sigma, int radius) {
+// Light of `image` as a path tracer would see it: of one deviate for all channels.
+Planes<3> add_noise(const Planes<3>& image, std::uint32_t seed, int samples) {
+  Planes<3> noisy = make_planes<3>(image[0].extent());
+  for (int y = 0; y < noisy[0].height(); ++y) {
+    for (int x = 0; x < noisy[0].width(); ++x) {
+      float mean = 0.0f;
+      for (int s = 0; s < samples; ++s) {
+        mean -= std::log(1.0f - to_unit(hash_key(seed, x, y, s))) / static_cast<float>(samples);
+      }
+      for (std::size_t c = 0; c < 3; ++c) {
+        const float light = mean * image[c](x, y);
+        noisy[c](x, y) = light / (1.0f + light);
+      }
+    }
+  }
+  return noisy;
+}
+
+// `light` by the colors of `image`.
+PyramidExample color_example(const Planes<3>& image, const Planes<3>& light, float sigma,
+                             int radius) {
   const Extent extent = image[0].extent();
   Plane<float> attributes(extent, 3), weight(extent);
   weight.fill(1.0f);
@@ -53,15 +76,15 @@ PyramidExample color_example(const Planes<3>& image, float sigma, int radius) {
     }
   }
   const ColorEdge edge{sigma, static_cast<float>(radius)};
-  return {edge, {attributes, image, weight}};
+  return {edge, {attributes, light, weight}};
 }
 
-PyramidExample frame_example(const std::string& scene_name, int radius, int side) {
+PyramidExample frame_example(const std::string& scene_name, int number, int radius, int side) {
   Scene scene = make_builtin_scene(scene_name);
   // The middle of a picture as large as people render, so that surfaces span as many pixels.
   const Extent extent{kFrameParts * side, kFrameParts * side};
   const auto animation = make_flythrough(scene, Perturbation::kNone, extent);
-  LiveSource source(scene, *animation, {.extent = extent, .spp = 1, .direct_spp = 1}, {kFrame});
+  LiveSource source(scene, *animation, {.extent = extent, .spp = 1, .direct_spp = 1}, {number});
   Frame frame;
   if (!source.next(frame)) throw std::logic_error("a source of one frame has none");
   Plane<float> attributes({side, side}, GlobalIlluminationEdge::kAttributes);
@@ -90,7 +113,10 @@ PyramidWeights train_octave(const TrainPyramidOptions& options, int radius,
                             const PyramidWeights& start, const std::function<bool()>& go_on,
                             TrainedRadius& report) {
   const int side = radius <= kLargestSmallRadius ? kSmallSide : kLargeSide;
-  const std::vector<PyramidExample> examples = make_pyramid_examples(options, radius, side);
+  std::vector<PyramidExample> examples;
+  for (NamedExample& one : make_pyramid_examples(options.pictures, radius, side)) {
+    examples.push_back(std::move(one.example));
+  }
   std::vector<PassGradient> unused(start.size());
   report.radius = radius;
   for (const PyramidExample& example : examples) {
@@ -110,26 +136,43 @@ PyramidWeights train_octave(const TrainPyramidOptions& options, int radius,
 
 }  // namespace
 
-void TrainPyramidOptions::validate() const {
+void PyramidPictures::validate() const {
   EL_CHECK(painted >= 0 && painted <= 64, "painted {}: expected 0 to 64 pictures", painted);
   EL_CHECK(painted > 0 || !images.empty() || !scenes.empty(),
            "nothing to learn from: no painted picture, no image, no scene");
+  EL_CHECK(frame >= 0 && frame <= 100000, "frame {}: expected 0 to 100000", frame);
+}
+
+void TrainPyramidOptions::validate() const {
+  pictures.validate();
   training.validate();
 }
 
-std::vector<PyramidExample> make_pyramid_examples(const TrainPyramidOptions& options, int radius,
-                                                  int side) {
-  std::vector<PyramidExample> examples;
-  const auto add = [&](const Planes<3>& image) {
-    examples.push_back(
-        color_example(image, kColorSigmas[examples.size() % kColorSigmas.size()], radius));
+std::vector<NamedExample> make_pyramid_examples(const PyramidPictures& pictures, int radius,
+                                                int side) {
+  std::vector<NamedExample> examples;
+  const auto add = [&](const std::string& name, const Planes<3>& image, const Planes<3>& light) {
+    // Noisy ones have each deviation, too.
+    const std::size_t turn = examples.size() + examples.size() / kNoisyEvery;
+    const float sigma = kColorSigmas[turn % kColorSigmas.size()];
+    examples.push_back({name, color_example(image, light, sigma, radius)});
   };
-  for (int i = 0; i < options.painted; ++i) {
-    add(paint_training_image({side, side}, static_cast<std::uint32_t>(i)));
+  for (int i = 0; i < pictures.painted; ++i) {
+    const std::uint32_t seed = pictures.seed + static_cast<std::uint32_t>(i);
+    const Planes<3> image = paint_training_image({side, side}, seed);
+    if (i % kNoisyEvery != kNoisyEvery - 1) {
+      add(fmt::format("painted {}", seed), image, image);
+      continue;
+    }
+    const auto turn = static_cast<std::size_t>(i / kNoisyEvery) % kPaintedSpp.size();
+    add(fmt::format("painted {}, noisy", seed), image, add_noise(image, seed, kPaintedSpp[turn]));
   }
-  for (const std::string& name : options.images) add(crop_middle(read_image(name), side, name));
-  for (const std::string& name : options.scenes) {
-    examples.push_back(frame_example(name, radius, side));
+  for (const std::string& name : pictures.images) {
+    const Planes<3> image = crop_middle(read_image(name), side, name);
+    add(name, image, image);
+  }
+  for (const std::string& name : pictures.scenes) {
+    examples.push_back({name, frame_example(name, pictures.frame, radius, side)});
   }
   return examples;
 }

@@ -40,12 +40,12 @@ void add_train_pyramid_command(CLI::App& app, const Console& console) {
       app.add_subcommand("train-pyramid", "Fit the weights of the pyramid filter to brute force");
   const auto options = std::make_shared<CommandOptions>();
   command->add_option("-o,--output", options->output, "C++ source to write")->required();
-  command->add_option("--images", options->train.images,
+  command->add_option("--images", options->train.pictures.images,
                       "EXR, PNG or JPEG files to learn from, besides the painted pictures");
-  command->add_option("--painted", options->train.painted, "Pictures painted by code")
+  command->add_option("--painted", options->train.pictures.painted, "Pictures painted by code")
       ->capture_default_str();
   command
-      ->add_option("--scenes", options->train.scenes,
+      ->add_option("--scenes", options->train.pictures.scenes,
                    "Built-in scenes to learn edges of geometry from")
       ->capture_default_str();
   command->add_option("--steps", options->train.training.steps, "Steps of descent for each radius")

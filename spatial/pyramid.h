@@ -146,6 +146,7 @@ class Pyramid {
         if (edge_.radius(own) != radius) {
           radius = edge_.radius(own);
           pass = table_.at(radius, l);
+          pass.gamma *= edge_.gamma();
         }
         blend_pyramid_pixel(pyramid_energies(edge_, fine, level(l + 1), {area, x, y}), pass,
                             levels_, {l, x, y});

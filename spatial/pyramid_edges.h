@@ -10,6 +10,9 @@
 //                        image; of two pixels that exist
 //   radius(a)            of the Gaussian domain function there, pixels; pyramid_sigma() of it is
 //                        the standard deviation
+//   gamma()              [0, 1], times the table's gamma: how much finer samples stand in for
+//   coarser
+//                        ones beyond an edge. "Solved by tuning", section 3.3.1, for each use
 // An energy rather than f^R, so that a power of f^R is a product.
 #pragma once
 
@@ -31,6 +34,8 @@ struct GlobalIlluminationEdge {
   float normal_power = 32.0f;  ///< [8, 1000] sigma_N
   float depth_scale = 4.0f;    ///< [0, 1000] sigma_z
   float blur_radius = 16.0f;   ///< [0, 64] pixels
+  /// [0, 1] of the table's gamma; 0 for diffuse light, as in section 5.1: noise is worse than blur.
+  float gamma_scale = 0.0f;
 
   void validate() const {
     EL_CHECK(normal_power >= 8.0f && normal_power <= 1000.0f, "normal_power {}: expected [8, 1000]",
@@ -39,6 +44,8 @@ struct GlobalIlluminationEdge {
              depth_scale);
     EL_CHECK(blur_radius >= 0.0f && blur_radius <= 64.0f, "radius {}: expected [0, 64] pixels",
              blur_radius);
+    EL_CHECK(gamma_scale >= 0.0f && gamma_scale <= 1.0f, "gamma_scale {}: expected [0, 1]",
+             gamma_scale);
   }
   [[nodiscard]] static bool exists(const float* a) { return a[3] > 0.0f; }
   [[nodiscard]] float energy(const float* p, const float* q, float) const {
@@ -48,6 +55,7 @@ struct GlobalIlluminationEdge {
     return bend + depth_scale * std::abs(p[3] - q[3]) / p[3];
   }
   [[nodiscard]] float radius(const float*) const { return blur_radius; }
+  [[nodiscard]] float gamma() const { return gamma_scale; }
 };
 
 /// Eq. 9 with roughness: glossy reflections. A fifth attribute, sqrt(alpha) in [0, 1], widens the
@@ -57,7 +65,9 @@ struct ReflectionEdge {
   static constexpr int kAttributes = 5;
   static constexpr bool kKeepsMajor = true;
 
-  GlobalIlluminationEdge geometry;  ///< its blur_radius is sigma_alpha, the radius at roughness 1
+  /// blur_radius is sigma_alpha, the radius at roughness 1. The paper's untrained filter has
+  /// gamma 1.
+  GlobalIlluminationEdge geometry{.gamma_scale = 0.15f};
 
   [[nodiscard]] static bool exists(const float* a) { return a[3] > 0.0f; }
   [[nodiscard]] float energy(const float* p, const float* q, float d2) const {
@@ -67,6 +77,7 @@ struct ReflectionEdge {
     return geometry.energy(p, q, d2) - std::log(alike);
   }
   [[nodiscard]] float radius(const float* a) const { return geometry.blur_radius * a[4]; }
+  [[nodiscard]] float gamma() const { return geometry.gamma_scale; }
 };
 
 /// Eq. 8: depth of field. Attribute: diameter of the circle of confusion in pixels, >= 0. The
@@ -89,6 +100,7 @@ struct DepthOfFieldEdge {
     const float narrowed = 1.0f / std::sqrt(36.0f / (circle * circle) + 1.0f / (sigma * sigma));
     return std::max(3.0f * narrowed - 1.0f, 0.0f);
   }
+  [[nodiscard]] static float gamma() { return 1.0f; }
 };
 
 /// Eq. 10: depth of particles. Attribute: depth (not > 0 or not finite: no particle).
@@ -99,12 +111,14 @@ struct ParticleEdge {
 
   float depth_scale = 1.0f;   ///< >= 0, one over squared units of depth
   float blur_radius = 16.0f;  ///< [0, 64] pixels
+  float gamma_scale = 0.4f;   ///< [0, 1]; the paper's untrained filter has 1
 
   [[nodiscard]] static bool exists(const float* a) { return a[0] > 0.0f && std::isfinite(a[0]); }
   [[nodiscard]] float energy(const float* p, const float* q, float) const {
     return depth_scale * p[0] * std::abs(p[0] - q[0]);
   }
   [[nodiscard]] float radius(const float*) const { return blur_radius; }
+  [[nodiscard]] float gamma() const { return gamma_scale; }
 };
 
 /// Colors as their own guide, exp(-|A_p - A_q|^2 / (2 sigma_r^2)): what section 3.3.2 trains on.
@@ -121,6 +135,7 @@ struct ColorEdge {
     return (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) / (2.0f * color_sigma * color_sigma);
   }
   [[nodiscard]] float radius(const float*) const { return blur_radius; }
+  [[nodiscard]] static float gamma() { return 1.0f; }
 };
 
 }  // namespace eigenlight

@@ -17,6 +17,7 @@ PyramidFilter::PyramidFilter(Extent extent, const GlobalIlluminationEdge& edge,
     : extent_(extent), edge_(edge), weights_(table.weights(edge.blur_radius)) {
   check_extent(extent);
   edge.validate();
+  for (PyramidPass& pass : weights_) pass.gamma *= edge.gamma();
   for (std::size_t l = 0; l < weights_.size(); ++l) {
     extent = {(extent.width + 1) / 2, (extent.height + 1) / 2};
     levels_.emplace_back(extent);

@@ -175,6 +175,8 @@ struct Interpolation {
   }
 };
 
+// kCompensates: finer samples stand in for coarser ones (gamma > 0). Without, a fifth is saved.
+template <bool kCompensates>
 struct Sums {
   VF result[4], mean[4];  // Eq. 2, and finer samples by their range function alone
   VF total, alike, moved;
@@ -184,8 +186,9 @@ struct Sums {
   }
 };
 
+template <bool kCompensates>
 HWY_INLINE void AddFine(const Center& center, const float* const (&at)[kPyramidChannels], VF weight,
-                        Sums& sums) {
+                        Sums<kCompensates>& sums) {
   const F d;
   MF alike;
   const auto load = [&](int channel) { return hn::LoadU(d, at[channel]); };
@@ -196,30 +199,35 @@ HWY_INLINE void AddFine(const Center& center, const float* const (&at)[kPyramidC
   for (int c = 0; c < 4; ++c) {
     const VF value = load(c);
     sums.result[c] = hn::MulAdd(w, value, sums.result[c]);
-    sums.mean[c] = hn::MulAdd(range, value, sums.mean[c]);
+    if (kCompensates) sums.mean[c] = hn::MulAdd(range, value, sums.mean[c]);
   }
   sums.total = hn::Add(sums.total, w);
-  sums.alike = hn::Add(sums.alike, range);
+  if (kCompensates) sums.alike = hn::Add(sums.alike, range);
 }
 
+template <bool kCompensates>
 HWY_INLINE void AddCoarse(const Center& center, const float* const (&at)[kPyramidChannels],
-                          VF weight, VF gamma, Sums& sums) {
+                          VF weight, VF gamma, Sums<kCompensates>& sums) {
   const F d;
   MF alike;
   const auto load = [&](int channel) { return hn::LoadU(d, at[channel]); };
   const VF energy =
       center.Energy(load(kNormal), load(kNormal + 1), load(kNormal + 2), load(kDepth), alike);
   const VF basic = hn::IfThenElseZero(alike, hn::Mul(weight, Range(energy)));  // Eq. 2e
-  const VF kept = hn::Mul(basic, Range(hn::Mul(gamma, energy)));               // Eq. 2c
+  VF kept = basic;
+  if (kCompensates) {
+    kept = hn::Mul(basic, Range(hn::Mul(gamma, energy)));  // Eq. 2c
+    sums.moved = hn::Add(sums.moved, hn::Sub(basic, kept));
+  }
   for (int c = 0; c < 4; ++c) sums.result[c] = hn::MulAdd(kept, load(c), sums.result[c]);
   sums.total = hn::Add(sums.total, basic);
-  sums.moved = hn::Add(sums.moved, hn::Sub(basic, kept));
 }
 
 // Eq. 2 for a vector of pixels at column `x` and row `y` of the tile: I_up times `sums.total`.
+template <bool kCompensates>
 HWY_INLINE void Blend(const PyramidUpPass& up, const PyramidFineBlock& fine,
                       const PyramidCoarseBlock& coarse, const Interpolation& interpolation, int x,
-                      int y, Sums& sums) {
+                      int y, Sums<kCompensates>& sums) {
   const F d;
   const float* at[kPyramidChannels];
   const auto point = [&](const auto& block, int row, int column) {
@@ -245,6 +253,7 @@ HWY_INLINE void Blend(const PyramidUpPass& up, const PyramidFineBlock& fine,
     point(coarse, y / 2 + 1 + dy, x + 2 * dx);
     AddCoarse(center, at, hn::LoadU(d, interpolation.weight[y % 2][i] + x % 2), gamma, sums);
   }
+  if (!kCompensates) return;
   // Eq. 2d.
   const VF share = hn::Div(sums.moved, sums.alike);
   for (int c = 0; c < 4; ++c) {
@@ -252,7 +261,7 @@ HWY_INLINE void Blend(const PyramidUpPass& up, const PyramidFineBlock& fine,
   }
 }
 
-template <typename Store>
+template <bool kCompensates, typename Store>
 void ForEachBlend(const PyramidUpPass& up, const Tile& tile, const Store& store) {
   const int lanes = static_cast<int>(hn::Lanes(F()));
   PyramidFineBlock fine;
@@ -262,16 +271,25 @@ void ForEachBlend(const PyramidUpPass& up, const Tile& tile, const Store& store)
   const Interpolation interpolation(up.pass);
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0; x < tile.x1; x += lanes) {
-      Sums sums;
+      Sums<kCompensates> sums;
       Blend(up, fine, coarse, interpolation, x - tile.x0, y - tile.y0, sums);
       store(sums, x, y);
     }
   }
 }
 
+template <typename Store>
+void ForEachBlend(const PyramidUpPass& up, const Tile& tile, const Store& store) {
+  if (up.pass.gamma > 0.0f) {
+    ForEachBlend<true>(up, tile, store);
+  } else {
+    ForEachBlend<false>(up, tile, store);
+  }
+}
+
 void UpTile(const PyramidUpPass& up, const Tile& tile, Planes<4>& result) {
   const F d;
-  ForEachBlend(up, tile, [&](const Sums& sums, int x, int y) {
+  ForEachBlend(up, tile, [&](const auto& sums, int x, int y) {
     for (std::size_t c = 0; c < 4; ++c) {
       hn::StoreU(hn::Div(sums.result[c], sums.total), d, result[c].row(y) + x);
     }
@@ -280,7 +298,7 @@ void UpTile(const PyramidUpPass& up, const Tile& tile, Planes<4>& result) {
 
 void LastTile(const PyramidUpPass& up, const Tile& tile, Planes<3>& out) {
   const F d;
-  ForEachBlend(up, tile, [&](const Sums& sums, int x, int y) {
+  ForEachBlend(up, tile, [&](const auto& sums, int x, int y) {
     const MF reached = hn::Gt(sums.result[kWeight], hn::Zero(d));
     for (std::size_t c = 0; c < 3; ++c) {
       hn::StoreU(hn::IfThenElseZero(reached, hn::Div(sums.result[c], sums.result[kWeight])), d,

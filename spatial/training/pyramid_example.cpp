@@ -36,13 +36,13 @@ void PyramidExample::add_pass(const Plane<float>& values) {
   passes_.back().samples.reserve(values.extent().pixels());
 }
 
-void PyramidExample::add_samples(bool exists, const PyramidEnergies& energies) {
+void PyramidExample::add_samples(bool exists, const PyramidEnergies& energies, float gamma) {
   Samples samples{};
   for (std::size_t i = 0; i < 9 && exists; ++i) {
     samples.fine[i] = std::exp(-energies.fine[i]);
     samples.coarse[i] = std::exp(-energies.coarse[i]);
     // Where the range function is 0 its energy has no part in anything.
-    samples.energy[i] = samples.coarse[i] > 0.0f ? energies.coarse[i] : 0.0f;
+    samples.energy[i] = samples.coarse[i] > 0.0f ? gamma * energies.coarse[i] : 0.0f;
   }
   passes_.back().samples.push_back(samples);
   passes_.back().exists.push_back(exists ? 1 : 0);

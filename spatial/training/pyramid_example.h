@@ -42,12 +42,14 @@ class PyramidExample {
       const int pixels = 1 << (2 * static_cast<int>(l));
       for_each_pixel(levels[l].values.extent(), [&](int x, int y) {
         const bool exists = edge.exists(levels[l].attributes.at(x, y));
-        add_samples(exists, exists
-                                ? pyramid_energies(edge, levels[l], levels[l + 1], {pixels, x, y})
-                                : PyramidEnergies{});
+        add_samples(exists,
+                    exists ? pyramid_energies(edge, levels[l], levels[l + 1], {pixels, x, y})
+                           : PyramidEnergies{},
+                    edge.gamma());
       });
     }
     coarsest_ = levels.back().values.clone();
+    weight_ = in.weight.clone();
   }
 
   /// The loss of the pyramid's result against brute force. `weights` and `gradient` have one entry
@@ -58,10 +60,12 @@ class PyramidExample {
   /// The pyramid's result, and what it should be.
   [[nodiscard]] Planes<3> filter(const PyramidWeights& weights) const;
   [[nodiscard]] const Planes<3>& target() const { return target_; }
+  [[nodiscard]] const Plane<float>& weight() const { return weight_; }  ///< of the inputs
   [[nodiscard]] int passes() const { return static_cast<int>(passes_.size()); }
 
  private:
-  /// Range functions of the samples that pixels of a level gather; energies of coarser ones.
+  /// Range functions of the samples that pixels of a level gather; energies of coarser ones, times
+  /// Edge::gamma().
   struct Samples {
     std::array<float, 9> fine, coarse, energy;
   };
@@ -80,7 +84,7 @@ class PyramidExample {
     }
   }
   void add_pass(const Plane<float>& values);
-  void add_samples(bool exists, const PyramidEnergies& energies);
+  void add_samples(bool exists, const PyramidEnergies& energies, float gamma);
   [[nodiscard]] std::vector<Field> run(const PyramidWeights& weights) const;
   [[nodiscard]] Planes<3> divide(const Field& result) const;
   void pull_back(std::size_t level, const PyramidPass& pass, std::vector<Field>& results,
@@ -91,6 +95,7 @@ class PyramidExample {
   std::vector<Pass> passes_;
   Plane<float> coarsest_;
   Planes<3> target_;
+  Plane<float> weight_;
 };
 
 }  // namespace eigenlight

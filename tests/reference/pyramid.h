@@ -33,6 +33,7 @@ struct Range {
   std::function<bool(const std::array<double, N>&)> exists;
   std::function<double(const std::array<double, N>&)> radius;
   bool keeps_major = true;
+  double gamma = 1.0;  // times that of a pass
 };
 
 /// Light times weight and weight, and attributes.
@@ -115,7 +116,7 @@ std::array<double, 4> upsample(const Range<N>& range, const Layer<N>& fine, cons
     const double wd = (17.0 - 3.0 * std::abs(4 * dx - 2 * (x % 2) + 1)) / 24.0 *
                       (17.0 - 3.0 * std::abs(4 * dy - 2 * (y % 2) + 1)) / 24.0;
     wb[n] = wd * fc * static_cast<double>(pass.coarse[n]);
-    fg[n] = std::pow(fc, static_cast<double>(pass.gamma));
+    fg[n] = std::pow(fc, range.gamma * static_cast<double>(pass.gamma));
     moved += wb[n] * (1.0 - fg[n]);
   }
   std::array<double, 4> sum{};
@@ -220,7 +221,8 @@ inline Range<4> global_illumination_range(const GlobalIlluminationEdge& edge) {
                    std::exp(-static_cast<double>(edge.depth_scale) * std::abs(p[3] - q[3]) / p[3]);
           },
           [](const A& a) { return a[3] > 0.0; },
-          [edge](const A&) { return static_cast<double>(edge.blur_radius); }};
+          [edge](const A&) { return static_cast<double>(edge.blur_radius); }, true,
+          static_cast<double>(edge.gamma_scale)};
 }
 
 /// Eq. 9 for reflections.
@@ -233,7 +235,8 @@ inline Range<5> reflection_range(const ReflectionEdge& edge) {
             return geometry.value(head(p), head(q), d) * (1.0 - t * t * (3.0 - 2.0 * t));
           },
           [](const A& a) { return a[3] > 0.0; },
-          [edge](const A& a) { return static_cast<double>(edge.geometry.blur_radius) * a[4]; }};
+          [edge](const A& a) { return static_cast<double>(edge.geometry.blur_radius) * a[4]; },
+          true, static_cast<double>(edge.geometry.gamma_scale)};
 }
 
 /// Attributes of GlobalIlluminationEdge: 0 where no surface counts.
@@ -276,7 +279,8 @@ inline Range<1> particle_range(const ParticleEdge& edge) {
             return std::exp(-static_cast<double>(edge.depth_scale) * p[0] * std::abs(p[0] - q[0]));
           },
           [](const A& a) { return a[0] > 0.0 && std::isfinite(a[0]); },
-          [edge](const A&) { return static_cast<double>(edge.blur_radius); }};
+          [edge](const A&) { return static_cast<double>(edge.blur_radius); }, true,
+          static_cast<double>(edge.gamma_scale)};
 }
 
 }  // namespace eigenlight::reference

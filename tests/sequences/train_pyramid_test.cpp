@@ -10,6 +10,7 @@
 #include "frame/tiles.h"
 #include "sequences/cli.h"
 #include "sequences/exr_io.h"
+#include "sequences/judge_pyramid.h"
 #include "spatial/training/training_images.h"
 #include "tests/support/temp_dir.h"
 
@@ -41,19 +42,59 @@ void write_picture(const std::filesystem::path& path, Extent extent) {
 TEST(TrainPyramid, LearnsFromPicturesFilesAndFrames) {
   const TempDir dir;
   write_picture(dir / "picture.exr", {40, 36});
-  TrainPyramidOptions options;
+  PyramidPictures options;
   options.painted = 2;
   options.images = {(dir / "picture.exr").string()};
   options.scenes = {"cornell"};
-  const std::vector<PyramidExample> examples = make_pyramid_examples(options, 2, 32);
+  const std::vector<NamedExample> examples = make_pyramid_examples(options, 2, 32);
   ASSERT_EQ(examples.size(), 4u);
-  for (const PyramidExample& example : examples) {
+  for (const auto& [name, example] : examples) {
     EXPECT_EQ(example.passes(), 2);
     EXPECT_EQ(example.target()[0].extent(), (Extent{32, 32}));
     double light = 0.0;
     for (int y = 0; y < 32; ++y) light += static_cast<double>(example.target()[0](y, y));
     EXPECT_GT(light, 0.0);
   }
+}
+
+// Every third painted picture is noise around the clean picture that guides it.
+TEST(TrainPyramid, SomePaintedPicturesAreNoisy) {
+  PyramidPictures pictures;
+  pictures.scenes.clear();
+  pictures.painted = 6;
+  pictures.seed = 7;
+  std::vector<std::string> names;
+  for (const auto& [name, example] : make_pyramid_examples(pictures, 1, 24)) names.push_back(name);
+  EXPECT_EQ(names, (std::vector<std::string>{"painted 7", "painted 8", "painted 9, noisy",
+                                             "painted 10", "painted 11", "painted 12, noisy"}));
+}
+
+// Of the committed table, on what it was not trained on.
+TEST(JudgePyramid, TheTrainedTableIsCloserToBruteForceOnEveryKindOfPicture) {
+  PyramidPictures pictures{.painted = 6, .seed = 1000, .scenes = {"cornell"}, .frame = 40};
+  for (const int radius : {2, 8, 32}) {
+    const std::vector<PyramidJudgement> kinds = judge_pyramid(pictures, radius, 64);
+    ASSERT_EQ(kinds.size(), 3u);
+    EXPECT_EQ(kinds[0].pictures, 4);
+    EXPECT_EQ(kinds[1].kind, "painted, noisy");
+    for (const PyramidJudgement& j : kinds) {
+      EXPECT_GT(j.trained.psnr, j.untrained.psnr) << j.kind << ", radius " << radius;
+    }
+  }
+}
+
+TEST(JudgePyramid, RefusesBadOptions) {
+  const auto judge = [](std::vector<const char*> words) {
+    words.insert(words.begin(), {"eigenlight", "judge-pyramid", "--painted", "1", "--side", "16"});
+    std::ostringstream out, err;
+    const int status = run_command_line(words, {out, err, false, ""});
+    set_thread_count(0);
+    return status;
+  };
+  EXPECT_EQ(judge({"--radii", "0"}), 2);
+  EXPECT_EQ(judge({"--radii", "65"}), 2);
+  EXPECT_EQ(judge({"--scenes", "nowhere"}), 2);
+  EXPECT_EQ(judge({"--side", "4"}), 2);
 }
 
 TEST(TrainPyramid, NamesAFileThatIsMissingOrTooSmall) {

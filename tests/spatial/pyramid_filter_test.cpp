@@ -44,15 +44,16 @@ struct Case {
 TEST(PyramidFilter, AgreesWithItsTwinOnEveryInstructionSet) {
   for (const Extent extent : kSweepExtents) {
     const Case c(extent);
-    for (const float radius : {0.4f, 3.0f, 24.0f}) {
-      const GlobalIlluminationEdge edge{.blur_radius = radius};
+    for (const auto& [radius, gamma] : {std::pair(0.4f, 1.0f), std::pair(3.0f, 0.0f),
+                                        std::pair(24.0f, 0.0f), std::pair(24.0f, 1.0f)}) {
+      const GlobalIlluminationEdge edge{.blur_radius = radius, .gamma_scale = gamma};
       const Planes<3> wanted = c.twin(edge);
       for_each_target([&] {
         const Planes<3> found = c.filter(edge);
         EXPECT_LE(reference::share_beyond(2e-4, found, wanted), 0.02)
-            << extent.width << "x" << extent.height << ", radius " << radius;
+            << extent.width << "x" << extent.height << ", radius " << radius << ", gamma " << gamma;
         EXPECT_LE(reference::share_beyond(1e-2, found, wanted), 1e-3)
-            << extent.width << "x" << extent.height << ", radius " << radius;
+            << extent.width << "x" << extent.height << ", radius " << radius << ", gamma " << gamma;
       });
     }
   }
@@ -133,6 +134,7 @@ TEST(PyramidFilter, RefusesBadOptionsAndSizes) {
   EXPECT_THROW(PyramidFilter({8, 8}, {.normal_power = 0.0f}), std::invalid_argument);
   EXPECT_THROW(PyramidFilter({8, 8}, {.depth_scale = -1.0f}), std::invalid_argument);
   EXPECT_THROW(PyramidFilter({8, 8}, {.blur_radius = 65.0f}), std::invalid_argument);
+  EXPECT_THROW(PyramidFilter({8, 8}, {.gamma_scale = 1.5f}), std::invalid_argument);
   EXPECT_THROW(PyramidFilter({0, 8}, {}), std::invalid_argument);
   Case c({20, 20});
   PyramidFilter filter({20, 20}, {});

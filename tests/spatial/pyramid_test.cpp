@@ -68,7 +68,7 @@ TEST(Pyramid, AgreesWithItsTwinOnSurfaces) {
   for (const Extent extent : kSweepExtents) {
     const Case c(extent);
     for (const float radius : {0.0f, 0.4f, 5.0f, 64.0f}) {
-      const GlobalIlluminationEdge edge{.blur_radius = radius};
+      const GlobalIlluminationEdge edge{.blur_radius = radius, .gamma_scale = 0.5f};
       const Planes<3> wanted = reference::pyramid(reference::global_illumination_range(edge),
                                                   c.inputs(), trained_pyramid_table());
       EXPECT_LE(reference::share_beyond(2e-4, c.filter(edge), wanted), 0.02)
