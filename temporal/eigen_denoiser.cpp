@@ -187,7 +187,7 @@ void EigenDenoiser::project() {
   coefficients_.set_used(memory_.active());
   for_each_tile(tiles_, [&](const Tile& tile) {
     predict_tile(warped_bases_, coefficients_, light_, tile,
-                 {prediction_, residual_, confirmed_, old_age_});
+                 {prediction_, residual_, confirmed_, old_age_, variance_});
   });
   report_.bounded_pixels = fireflies_.process(
       {prediction_, confirmed_, old_age_, samples_, variance_}, light_, residual_);
