@@ -189,8 +189,8 @@ void EigenDenoiser::project() {
     predict_tile(warped_bases_, coefficients_, light_, tile,
                  {prediction_, residual_, confirmed_, old_age_, variance_});
   });
-  report_.bounded_pixels = fireflies_.process(
-      {prediction_, confirmed_, old_age_, samples_, variance_}, light_, residual_);
+  report_.bounded_pixels = fireflies_.process({prediction_, old_age_, samples_, variance_},
+                                              {light_, residual_, confirmed_});
   const CorrectionInputs inputs{frame_, light_, confirmed_, old_age_, samples_, variance_};
   const double corrected =
       options_.correct ? correction_.process(inputs, prediction_, residual_) : 0.0;
@@ -223,7 +223,7 @@ void EigenDenoiser::update() {
     }
     innovation_tile({residual_, confirmed_, old_age_, samples_}, options_.innovation, tile,
                     {new_age_, variance_});
-    fresh_variance(frame_, samples_, old_age_, tile, variance_);
+    fresh_variance({frame_, samples_, old_age_, fireflies_.brightness()}, tile, variance_);
     const Planes<3>* correction =
         correction_.is_open(tile.index) ? &correction_.correction() : nullptr;
     update_tile({coefficients_, learning_, prediction_, correction, light_, samples_, old_age_,

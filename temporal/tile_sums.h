@@ -24,10 +24,10 @@ inline constexpr float kOutlier = 8.0f;
 struct TileSums {
   std::array<double, kMaxBases*(kMaxBases + 1) / 2> gram{};  ///< <V_i, V_j>, packed
   std::array<double, kMaxBases> innovation{};                ///< <V_i, r>
-  std::array<double, kMaxBases> spread{};  ///< sum_p m^2 (V_i . r)^2
-  std::array<double, kMaxBases> lean{};    ///< sum_p m^2 (V_i . r) (V_i . V_0)
-  std::array<double, kMaxBases> reach{};   ///< sum_p m^2 (V_i . V_0)^2
-  double pixels = 0.0;                     ///< with m > 0
+  std::array<double, kMaxBases> spread{};                    ///< sum_p m^2 (V_i . r)^2
+  std::array<double, kMaxBases> lean{};                      ///< sum_p m^2 (V_i . r) (V_i . V_0)
+  std::array<double, kMaxBases> reach{};                     ///< sum_p m^2 (V_i . V_0)^2
+  double pixels = 0.0;                                       ///< with m > 0
 
   TileSums& operator+=(const TileSums& other);
   /// Variance of innovation[i] where the light's gain is 1 + delta, fitted to the same pixels:
