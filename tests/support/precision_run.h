@@ -10,6 +10,7 @@
 #include "render/live_source.h"
 #include "sequences/flythrough.h"
 #include "sequences/scene_source.h"
+#include "sequences/stress/eigen_state.h"
 #include "tests/reference/pipeline/eigen_twin.h"
 
 namespace eigenlight {
@@ -56,26 +57,26 @@ class PrecisionRun {
         scene_(open_scene({scene.name}, notes_)),
         animation_(make_flythrough(scene_, scene.perturbation, extent_)),
         frames_(static_cast<std::size_t>(scene.frames)),
-        live_(scene_, *animation_, render_options(), (std::iota(frames_.begin(), frames_.end(), 0),
-                                                      frames_)),
+        live_(scene_, *animation_, render_options(),
+              (std::iota(frames_.begin(), frames_.end(), 0), frames_)),
         source_(live_, extent_),
         fast_({extent_, kBases}),
         twin_(extent_, kBases),
-        slots_(1) {}
+        slots_(kBases) {}
 
   /// Largest |fast - twin| / max(twin, 0.1 % of the picture's mean) over all values of the next
   /// frame; negative at the end.
   [[nodiscard]] double step() {
     const Planes<3>* picture = fast_.step(source_);
     if (picture == nullptr) return -1.0;
-    const std::vector<bool> before = slots_;
-    if (fast_.report().cut) slots_.assign(1, true);
-    read_slots();
+    EigenState state(extent_, kBases);
+    state.take(fast_);
     twin::Given given{fast_.frame(), fast_.report().cut, source_.extra(), source_.mean(), 0, {}};
-    for (std::size_t k = 1; k < slots_.size(); ++k) {
-      const bool was = k < before.size() && before[k] && !given.cut;
-      if (slots_[k] && !was) given.newborn = static_cast<int>(k);
-      if (!slots_[k] && was) given.retired.push_back(static_cast<int>(k));
+    for (int k = 1; k < kBases; ++k) {
+      const bool was = slots_[static_cast<std::size_t>(k)] && !given.cut;
+      const bool is = slots_[static_cast<std::size_t>(k)] = state.memory.is_used(k);
+      if (is && !was) given.newborn = k;
+      if (!is && was) given.retired.push_back(k);
     }
     births_ += given.newborn > 0 ? 1 : 0;
     return difference(*picture, twin_.step(given));
@@ -92,37 +93,13 @@ class PrecisionRun {
     return options;
   }
 
-  // Which bases are in use, from what a checkpoint holds.
-  void read_slots() {
-    StateWriter saved;
-    fast_.save(saved);
-    StateReader in({saved.bytes().data(), saved.bytes().size()});
-    int version = 0, bases = 0, used = 0, since_birth = 0;
-    in.value("eigenlight", version);
-    SurfaceHistory(extent_).load(in);
-    in.value("bases", bases);
-    in.value("bases in use", used);
-    BasisField field(extent_, used);
-    in.plane("basis values", field.data());
-    Plane<float> variance;
-    in.plane("variance", variance);
-    in.value("frames since birth", since_birth);
-    slots_.clear();
-    for (int k = 0; k < bases; ++k) {
-      std::uint8_t slot = 0;
-      in.value("slot in use", slot);
-      slots_.push_back(slot != 0);
-    }
-  }
-
   [[nodiscard]] static double difference(const Planes<3>& fast,
                                          const reference::AtrousImage& twin) {
     double sum = 0.0, largest = 0.0;
     for (std::size_t c = 0; c < 3; ++c) {
       for (const double value : twin.values[c]) sum += std::abs(value);
     }
-    const double floor =
-        1e-3 * sum / (3.0 * static_cast<double>(twin.extent.pixels())) + 1e-30;
+    const double floor = 1e-3 * sum / (3.0 * static_cast<double>(twin.extent.pixels())) + 1e-30;
     for (std::size_t c = 0; c < 3; ++c) {
       for (int y = 0; y < twin.extent.height; ++y) {
         for (int x = 0; x < twin.extent.width; ++x) {
@@ -146,7 +123,7 @@ class PrecisionRun {
   RecordedSource source_;
   EigenDenoiser fast_;
   twin::EigenTwin twin_;
-  std::vector<bool> slots_;
+  std::vector<bool> slots_;  // in use after the last frame
   int births_ = 0;
 };
 

@@ -29,10 +29,9 @@ inline void load_cell(const Residual& r, const Frame& frame, glm::ivec2 cell, Ce
   std::array<double, 3> sum{};
   for (int y = first.y; y < std::min(first.y + 2, r.value.extent.height); ++y) {
     for (int x = first.x; x < std::min(first.x + 2, r.value.extent.width); ++x) {
-      const double cosine =
-          glm::dot(normal_at(frame, first.x, first.y), normal_at(frame, x, y));
-      const bool same = glm::ivec2(x, y) == first ||
-                        cosine >= static_cast<double>(TapOptions{}.normal_cosine);
+      const double cosine = glm::dot(normal_at(frame, first.x, first.y), normal_at(frame, x, y));
+      const bool same =
+          glm::ivec2(x, y) == first || cosine >= static_cast<double>(TapOptions{}.normal_cosine);
       if (!(r.confirmed(x, y) > 0.0) || frame.surface.id(x, y) != id || !same) continue;
       count += 1.0;
       noise += r.noise(x, y);
@@ -75,7 +74,7 @@ inline std::array<double, 3> take_cells(const Frame& frame, Cells& cells, int x,
   const glm::dvec3 view = glm::dmat3(camera.world_to_view) * normal;
   const auto along = [&](int px, int py) {
     return glm::dot(glm::dvec2(view), (glm::dvec2(px, py) + 0.5 - glm::dvec2(camera.center)) /
-                                   static_cast<double>(camera.focal)) +
+                                          static_cast<double>(camera.focal)) +
            view.z;
   };
   const GBuffer& surface = cells.geometry.guides.surface;

@@ -146,8 +146,7 @@ inline SmallVector solve(const Sums& sums, const SmallVector& expected, double n
     double variance = 0.0;
     for (int b = 0; b < rank; ++b) {
       const int k = used[static_cast<std::size_t>(b)];
-      const double about =
-          sums.spread[k] - 2.0 * gain * sums.lean[k] + gain * gain * sums.reach[k];
+      const double about = sums.spread[k] - 2.0 * gain * sums.lean[k] + gain * gain * sums.reach[k];
       const double scatter =
           pixels > 3.0 ? std::max(about, 0.0) * pixels / (pixels - 3.0) : sums.spread[k];
       variance += inverse(a, b) * inverse(a, b) * scatter;

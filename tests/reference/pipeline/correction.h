@@ -52,10 +52,9 @@ inline std::vector<FireflyBlock> firefly_blocks(const Residual& r, const Firefly
     each_in_block(r.value.extent, bx, by, [&](int x, int y) {
       const bool confirmed = r.confirmed(x, y) > 0.0, usable = r.samples(x, y) > 0.0;
       block.confirmed += confirmed ? 1 : 0;
-      block.outliers += confirmed && std::abs(r.value(x, y)) >
-                                         options.deviations * firefly_sigma(r, x, y)
-                            ? 1
-                            : 0;
+      block.outliers +=
+          confirmed && std::abs(r.value(x, y)) > options.deviations * firefly_sigma(r, x, y) ? 1
+                                                                                             : 0;
       block.usable += usable ? 1 : 0;
       block.fresh += usable && !confirmed ? 1 : 0;
       block.root += usable ? std::sqrt(std::abs(luminance(r.light, x, y))) : 0.0;

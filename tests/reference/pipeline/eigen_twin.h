@@ -173,8 +173,8 @@ class EigenTwin {
       if (!(r_.samples(x, y) > 0.0)) return;
       const auto& u = frame.indirect;
       const double most = r_.brightness(x / 8, y / 8);
-      const double l = std::clamp(
-          0.2126 * u[0](x, y) + 0.7152 * u[1](x, y) + 0.0722 * u[2](x, y), -most, most);
+      const double l =
+          std::clamp(0.2126 * u[0](x, y) + 0.7152 * u[1](x, y) + 0.0722 * u[2](x, y), -most, most);
       count += 1.0, sum += l, square += l * l;
     });
     return count > 1.0 ? std::max(square / count - sum * sum / (count * count), 0.0) : 0.0;
