@@ -63,8 +63,12 @@ FireflyBound::Region FireflyBound::region(const Tile& tile) const {
     }
   }
   const double mean = sum.usable > 0 ? sum.root / sum.usable : 0.0;
-  return {static_cast<float>(sum.outliers) <= options_.share * static_cast<float>(sum.confirmed),
-          sum.fresh > 0, options_.times * static_cast<float>(mean * mean)};
+  const auto few = [&](const FireflyBlock& block, float share) {
+    return static_cast<float>(block.outliers) <= share * static_cast<float>(block.confirmed);
+  };
+  const FireflyBlock& own = blocks_[static_cast<std::size_t>(tile.index)];
+  return {few(sum, options_.share) && few(own, 2.0f * options_.share), sum.fresh > 0,
+          options_.times * static_cast<float>(mean * mean)};
 }
 
 int FireflyBound::bound(const FireflyInputs& in, const Tile& tile, const FireflyOutputs& out) {

@@ -54,7 +54,8 @@ struct FireflyOutputs {
 /// Bounded influence (Huber 1964). A residual r of luminance, with
 ///   sigma^2 = v (1/s + 1/n) + (0.1 luminance(prediction))^2,
 /// is an outlier beyond `deviations` sigma. Where no more than `share` of the confirmed pixels in
-/// the 3 x 3 blocks of 8 x 8 pixels around are outliers,
+/// the 3 x 3 blocks of 8 x 8 pixels around are outliers, and no more than twice as many of those in
+/// the pixel's own block (an edge of light that moves has them side by side, fireflies have not),
 ///   - light is scaled back to min((n + s) / (s sqrt(n)), `deviations`) sigma from the prediction:
 ///     the mean of n + s samples moves by one of its own deviations, sigma / sqrt(n), at most;
 ///   - the pixel is no longer confirmed, and its residual 0: it is no witness of what the light

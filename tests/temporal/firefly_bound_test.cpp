@@ -82,6 +82,17 @@ TEST(FireflyBound, ALightThatChangesIsNoFirefly) {
   EXPECT_EQ(p.residual(12, 12), 99.0f);
 }
 
+// A twelfth of the pixels around, but a third of their own block: an edge of light that moves.
+TEST(FireflyBound, OutliersSideBySideAreNoFireflies) {
+  for (const int rows : {1, 3}) {
+    Wall p;
+    for (int y = 8; y < 8 + rows; ++y) {
+      for (int x = 8; x < 16; ++x) p.set(x, y, 100.0f);
+    }
+    EXPECT_EQ(p.process(), rows == 1 ? 8 : 0);
+  }
+}
+
 TEST(FireflyBound, NewPixelsAreHeldAgainstTheLightAroundThem) {
   Wall p;
   p.confirmed.fill(0.0f);
@@ -91,7 +102,7 @@ TEST(FireflyBound, NewPixelsAreHeldAgainstTheLightAroundThem) {
   const float root = (575.0f + 1000.0f) / 576.0f;
   EXPECT_NEAR(p.light[1](13, 9), 16.0f * root * root, 0.1f);
   EXPECT_EQ(p.light[1](14, 9), 1.0f);
-  EXPECT_NEAR(p.bound.brightness()(0, 0), 16.0f * root * root, 0.1f);
+  EXPECT_NEAR(p.bound.brightness()(1, 1), 16.0f * root * root, 0.1f);
 }
 
 TEST(FireflyBound, BrightnessIsBoundedOnlyNearNewPixels) {

@@ -156,7 +156,7 @@ TEST(TileSums, HoldBackALineOfOutliersAndFollowATileOfThem) {
     return 1.0 + sums.innovation[0] / sums.gram[0];
   };
   for_each_target([&] {
-    EXPECT_NEAR(gain(1), 1.0, 0.01);  // -5 / 32 in the mean
+    EXPECT_NEAR(gain(1), 1.0, 0.02);  // not held back, 1 - 6 / 32
     EXPECT_NEAR(gain(16), -2.0, 1e-5);
   });
 }

@@ -40,7 +40,8 @@ inline void load_cell(const Residual& r, const Frame& frame, glm::ivec2 cell, Ce
   }
   GBuffer& surface = cells.geometry.guides.surface;
   surface.id(cell.x, cell.y) = count > 0.0 ? id : 0;
-  surface.depth(cell.x, cell.y) = frame.surface.depth(first.x, first.y);
+  surface.depth(cell.x, cell.y) =
+      count > 0.0 ? frame.surface.depth(first.x, first.y) : std::numeric_limits<float>::infinity();
   for (std::size_t c = 0; c < 3; ++c) {
     surface.normal[c](cell.x, cell.y) = frame.surface.normal[c](first.x, first.y);
     cells.value(c, cell.x, cell.y) = sum[c] / std::max(count, 1.0);

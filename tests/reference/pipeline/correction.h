@@ -98,7 +98,11 @@ inline void bound_fireflies(const FireflyOptions& options, Residual& r) {
     });
     const double mean = sum.usable > 0 ? sum.root / sum.usable : 0.0;
     const double brightness = options.times * mean * mean;
-    const bool steady = sum.outliers <= static_cast<double>(options.share) * sum.confirmed;
+    const auto few = [](const FireflyBlock& block, double share) {
+      return block.outliers <= share * block.confirmed;
+    };
+    const double share = static_cast<double>(options.share);
+    const bool steady = few(sum, share) && few(blocks[r.brightness.index(bx, by)], 2.0 * share);
     r.brightness(bx, by) = sum.fresh > 0 ? brightness : std::numeric_limits<double>::infinity();
     each_in_block(r.value.extent, bx, by,
                   [&](int x, int y) { bound_pixel(options, steady, brightness, x, y, r); });
