@@ -19,7 +19,9 @@ TileSums window_sums(std::span<const TileSums> sums, const TileGrid& grid, int i
       TileSums part = sums[static_cast<std::size_t>(y * grid.columns() + x)];
       for (double& g : part.gram) g *= weight;
       for (double& d : part.innovation) d *= weight;
-      for (double& s : part.spread) s *= weight * weight;
+      for (auto* squares : {&part.spread, &part.lean, &part.reach}) {
+        for (double& s : *squares) s *= weight * weight;
+      }
       part.pixels *= weight;
       total += part;
     }
@@ -46,25 +48,30 @@ Solution solve(const TileSums& sums, int bases) {
   if (rank == 0 || !(first > 0.0)) return out;
 
   SmallMatrix gram(rank, rank);
-  SmallVector right(rank), spread(rank);
+  SmallVector right(rank);
   for (int a = 0; a < rank; ++a) {
     const int j = used[static_cast<std::size_t>(a)];
     right[a] = sums.innovation[static_cast<std::size_t>(j)];
-    spread[a] = sums.spread[static_cast<std::size_t>(j)];
     for (int b = 0; b <= a; ++b) {
       const int i = used[static_cast<std::size_t>(b)];
       gram(a, b) = gram(b, a) = sums.gram[static_cast<std::size_t>(packed(i, j))];
     }
-    // A ridge of 1e-6 of its own energy keeps nearly parallel bases apart (condition <= 1e6).
-    gram(a, a) *= 1.0 + 1e-6;
+    // A ridge of 1e-6 of its own energy keeps nearly parallel bases apart (condition <= 1e6). Not
+    // on the first: a light that falls to 1e-6 would be taken for 2e-6.
+    if (a > 0) gram(a, a) *= 1.0 + 1e-6;
   }
   const SmallMatrix inverse = gram.ldlt().solve(SmallMatrix::Identity(rank, rank));
   const SmallVector delta = inverse * right;
+  SmallVector scatter(rank);
+  for (int a = 0; a < rank; ++a) {
+    const int k = used[static_cast<std::size_t>(a)];
+    scatter[a] = sums.scatter(static_cast<std::size_t>(k), delta[0]);
+  }
   for (int a = 0; a < rank; ++a) {
     const int k = used[static_cast<std::size_t>(a)];
     out.delta[k] = delta[a];
     for (int b = 0; b < rank; ++b) {
-      out.variance[k] += inverse(a, b) * inverse(a, b) * spread[b];
+      out.variance[k] += inverse(a, b) * inverse(a, b) * scatter[b];
     }
   }
   return out;

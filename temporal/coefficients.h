@@ -56,8 +56,9 @@ class CoefficientField {
 /// one out).
 ///
 /// Each delta_k is then shrunk by its own noise, delta_k * max(0, 1 - noise var(delta_k) /
-/// delta_k^2) (positive-part James-Stein), with var from the observed spread of the pixels' own
-/// estimates. Without this a steady light would flicker by the noise of its gain.
+/// delta_k^2) (positive-part James-Stein), with var from the observed scatter of the pixels' own
+/// estimates about the gain 1 + delta_0. Without this a steady light would flicker by the noise of
+/// its gain; about a gain of 1 instead, a light that goes out would leave 0.2 % of itself behind.
 ///
 /// Where `expected` tells the mean square m of delta_k over past frames (entry tile * K + k; empty:
 /// not known), the Wiener factor m / (m + var) is taken if it keeps more: a basis in use is

@@ -175,9 +175,9 @@ void EigenDenoiser::predict(bool resampled) {
       count.fresh += found.fresh;
       count.non_finite += found.non_finite;
       predict_tile(warped_bases_, coefficients_, light_, row,
-                   {prediction_, residual_, confirmed_, old_age_});
+                   {prediction_, residual_, confirmed_, old_age_, variance_});
     });
-    fireflies_.count({prediction_, confirmed_, old_age_, samples_, variance_}, light_, residual_,
+    fireflies_.count({prediction_, old_age_, samples_, variance_}, {light_, residual_, confirmed_},
                      strip.area);
   });
   for (const TileCount& count : counts_) {
@@ -194,8 +194,8 @@ void EigenDenoiser::project(bool resampled) {
   }
   coefficients_.set_used(memory_.active());
   predict(resampled);
-  report_.bounded_pixels =
-      fireflies_.bound({prediction_, confirmed_, old_age_, samples_, variance_}, light_, residual_);
+  report_.bounded_pixels = fireflies_.bound({prediction_, old_age_, samples_, variance_},
+                                            {light_, residual_, confirmed_});
   const CorrectionInputs inputs{frame_, light_, confirmed_, old_age_, samples_, variance_};
   const double corrected =
       options_.correct ? correction_.process(inputs, prediction_, residual_) : 0.0;
@@ -230,7 +230,8 @@ void EigenDenoiser::update() {
       if (is_empty(tiles_.tile(i))) {
         clear_tile(tiles_.tile(i));
       } else {
-        fresh_variance(frame_, samples_, old_age_, tiles_.tile(i), variance_);
+        fresh_variance({frame_, samples_, old_age_, fireflies_.brightness()}, tiles_.tile(i),
+                       variance_);
       }
     }
     for_each_segment(tiles_, strip, [&](const Tile& row) {

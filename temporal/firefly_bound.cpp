@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "frame/luminance.h"
 
 namespace eigenlight {
 namespace {
-
-constexpr int kBlock = 8;
 
 void scale_towards(const Planes<3>& center, float factor, int x, int y, Planes<3>& light) {
   for (std::size_t c = 0; c < 3; ++c) {
@@ -29,17 +28,25 @@ void FireflyOptions::validate() const {
 
 FireflyBound::FireflyBound(Extent extent, const FireflyOptions& options)
     : options_(options),
-      grid_(extent, kBlock, kBlock),
+      grid_(extent, kFireflyBlock, kFireflyBlock),
+      brightness_({grid_.columns(), grid_.rows()}),
       blocks_(static_cast<std::size_t>(grid_.count())),
       bounded_(static_cast<std::size_t>(grid_.rows())) {
   options.validate();
 }
 
-// How far the residual of a confirmed pixel may go.
-float FireflyBound::reach(const FireflyInputs& in, int x, int y) const {
+// Of the residual of a confirmed pixel.
+float FireflyBound::deviation(const FireflyInputs& in, int x, int y) const {
   const float noise = in.variance(x, y) * (1.0f / in.samples(x, y) + 1.0f / in.age(x, y));
   const float expected = 0.1f * luminance(in.prediction, x, y);
-  return options_.deviations * std::sqrt(noise + expected * expected);
+  return std::sqrt(noise + expected * expected);
+}
+
+// Deviations by which an outlier may be off. It has the weight s / (n + s) in the new mean, and the
+// mean the deviation 1 / sqrt(n) of a frame's.
+float FireflyBound::step(const FireflyInputs& in, int x, int y) const {
+  const float n = in.age(x, y), s = in.samples(x, y);
+  return std::min((n + s) / (s * std::sqrt(n)), options_.deviations);
 }
 
 FireflyBound::Region FireflyBound::region(const Tile& tile) const {
@@ -51,34 +58,41 @@ FireflyBound::Region FireflyBound::region(const Tile& tile) const {
       sum.confirmed += block.confirmed;
       sum.outliers += block.outliers;
       sum.usable += block.usable;
+      sum.fresh += block.fresh;
       sum.root += block.root;
     }
   }
   const double mean = sum.usable > 0 ? sum.root / sum.usable : 0.0;
-  return {static_cast<float>(sum.outliers) <= options_.share * static_cast<float>(sum.confirmed),
+  const auto few = [&](const FireflyBlock& block, float share) {
+    return static_cast<float>(block.outliers) <= share * static_cast<float>(block.confirmed);
+  };
+  const FireflyBlock& own = blocks_[static_cast<std::size_t>(tile.index)];
+  return {few(sum, options_.share) && few(own, 2.0f * options_.share), sum.fresh > 0,
           options_.times * static_cast<float>(mean * mean)};
 }
 
-int FireflyBound::bound_block(const FireflyInputs& in, const Tile& tile, Planes<3>& light,
-                              Plane<float>& residual) const {
+int FireflyBound::bound_block(const FireflyInputs& in, const Tile& tile,
+                              const FireflyOutputs& out) {
   const FireflyBlock& own = blocks_[static_cast<std::size_t>(tile.index)];
-  if (own.outliers == 0 && own.fresh == 0) return 0;
   const Region around = region(tile);
+  brightness_(tile.index % grid_.columns(), tile.index / grid_.columns()) =
+      around.is_fresh ? around.brightness : std::numeric_limits<float>::infinity();
+  if (own.outliers == 0 && own.fresh == 0) return 0;
   int bounded = 0;
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0; x < tile.x1; ++x) {
-      if (in.confirmed(x, y) > 0.0f) {
-        const float size = std::abs(residual(x, y));
+      if (out.confirmed(x, y) > 0.0f) {
+        const float size = std::abs(out.residual(x, y));
         if (!around.is_steady || size == 0.0f) continue;
-        const float allowed = reach(in, x, y);
-        if (size <= allowed) continue;
-        scale_towards(in.prediction, allowed / size, x, y, light);
-        residual(x, y) *= allowed / size;
+        const float sigma = deviation(in, x, y);
+        if (size <= options_.deviations * sigma) continue;
+        scale_towards(in.prediction, step(in, x, y) * sigma / size, x, y, out.light);
+        out.residual(x, y) = out.confirmed(x, y) = 0.0f;
         ++bounded;
       } else if (in.samples(x, y) > 0.0f) {
-        const float size = std::abs(luminance(light, x, y));
+        const float size = std::abs(luminance(out.light, x, y));
         if (size <= around.brightness) continue;
-        for (auto& plane : light) plane(x, y) *= around.brightness / size;
+        for (auto& plane : out.light) plane(x, y) *= around.brightness / size;
         ++bounded;
       }
     }
@@ -86,25 +100,23 @@ int FireflyBound::bound_block(const FireflyInputs& in, const Tile& tile, Planes<
   return bounded;
 }
 
-void FireflyBound::count(const FireflyInputs& in, const Planes<3>& light,
-                         const Plane<float>& residual, const Tile& area) {
+void FireflyBound::count(const FireflyInputs& in, const FireflyOutputs& out, const Tile& area) {
   EL_DCHECK(area.x0 % kBlock == 0 && area.y0 % kBlock == 0);
   for (int y = area.y0; y < area.y1; y += kBlock) {
     for (int x = area.x0; x < area.x1; x += kBlock) {
       const int index = y / kBlock * grid_.columns() + x / kBlock;
       blocks_[static_cast<std::size_t>(index)] =
-          count_fireflies(in, options_.deviations, light, residual, grid_.tile(index));
+          count_fireflies(in, options_.deviations, out, grid_.tile(index));
     }
   }
 }
 
-std::int64_t FireflyBound::bound(const FireflyInputs& in, Planes<3>& light,
-                                 Plane<float>& residual) {
+std::int64_t FireflyBound::bound(const FireflyInputs& in, const FireflyOutputs& out) {
   const int columns = grid_.columns();
   parallel_for(grid_.rows(), [&](int row) {
     int bounded = 0;
     for (int i = row * columns; i < (row + 1) * columns; ++i) {
-      bounded += bound_block(in, grid_.tile(i), light, residual);
+      bounded += bound_block(in, grid_.tile(i), out);
     }
     bounded_[static_cast<std::size_t>(row)] = bounded;
   });

@@ -9,9 +9,12 @@
 
 namespace eigenlight {
 
+/// Side of a block in pixels.
+inline constexpr int kFireflyBlock = 8;
+
 struct FireflyOptions {
-  /// [1, 1000] standard deviations that a sample may be off its prediction. At 8 exponential noise
-  /// loses 0.03 % of its light, and a history of 64 frames moves by one deviation of its own.
+  /// [1, 1000] standard deviations that a sample may be off its prediction. Exponential noise goes
+  /// beyond 8 with a chance of 0.012 %, and so loses 0.1 % of its light at most.
   float deviations = 8.0f;
   /// [1, 1000] times the light around it that a new pixel may be as bright as.
   float times = 16.0f;
@@ -22,9 +25,8 @@ struct FireflyOptions {
 };
 
 struct FireflyInputs {
-  const Planes<3>& prediction;    ///< what history expects; read where `confirmed` is 1
-  const Plane<float>& confirmed;  ///< 1 where there is history and the light is usable, else 0
-  const Plane<float>& age;        ///< n, of the history
+  const Planes<3>& prediction;   ///< what history expects; read where `confirmed` is 1
+  const Plane<float>& age;       ///< n, of the history
   const Plane<float>& samples;   ///< s, this frame's samples over its regular number; 0: not usable
   const Plane<float>& variance;  ///< v, of one frame's luminance
 };
@@ -38,45 +40,61 @@ struct FireflyBlock {
   double root = 0.0;  ///< sum of sqrt(luminance) of the usable
 };
 
+/// What the bound changes.
+struct FireflyOutputs {
+  Planes<3>& light;
+  Plane<float>& residual;   ///< luminance of light - prediction
+  Plane<float>& confirmed;  ///< 1 where there is history and the light is usable, else 0
+};
+
 /// Counts the pixels of a block whose left edge is a multiple of 8.
 [[nodiscard]] FireflyBlock count_fireflies(const FireflyInputs& in, float deviations,
-                                           const Planes<3>& light, const Plane<float>& residual,
-                                           const Tile& block);
+                                           const FireflyOutputs& out, const Tile& block);
 
 /// Bounded influence (Huber 1964). A residual r of luminance, with
 ///   sigma^2 = v (1/s + 1/n) + (0.1 luminance(prediction))^2,
 /// is an outlier beyond `deviations` sigma. Where no more than `share` of the confirmed pixels in
-/// the 3 x 3 blocks of 8 x 8 pixels around are outliers, light and residual are scaled back to that
-/// distance from the prediction; where more are, the light itself has changed and nothing is done.
-/// A new pixel may be `times` as bright as (mean sqrt(luminance))^2 over the usable pixels of those
-/// blocks, which a few fireflies hardly move. Light that is bright in every frame is so learned
-/// step by step, light that was bright once leaves no trail.
+/// the 3 x 3 blocks of 8 x 8 pixels around are outliers, and no more than twice as many of those in
+/// the pixel's own block (an edge of light that moves has them side by side, fireflies have not),
+///   - light is scaled back to min((n + s) / (s sqrt(n)), `deviations`) sigma from the prediction:
+///     the mean of n + s samples moves by one of its own deviations, sigma / sqrt(n), at most;
+///   - the pixel is no longer confirmed, and its residual 0: it is no witness of what the light
+///     around does.
+/// Where more are, the light itself has changed and nothing is done. A new pixel may be `times` as
+/// bright as (mean sqrt(luminance))^2 over the usable pixels of those blocks, which a few fireflies
+/// hardly move. Light that is bright in every frame is so learned step by step, light that was
+/// bright once leaves no trail.
 class FireflyBound {
  public:
   /// Throws std::invalid_argument on a bad size or option.
   FireflyBound(Extent extent, const FireflyOptions& options);
 
-  /// Counts the pixels of `area`, whose edges are multiples of 8 or those of the image. To be
-  /// called for all of the image, in any order and on any thread, before bound().
-  void count(const FireflyInputs& in, const Planes<3>& light, const Plane<float>& residual,
-             const Tile& area);
-  /// Changes `light` and `residual` (luminance of light - prediction). Returns how many pixels.
-  std::int64_t bound(const FireflyInputs& in, Planes<3>& light, Plane<float>& residual);
+  /// Counts the pixels of `area`, whose edges are multiples of 8 or those of the image, and changes
+  /// nothing. To be called for all of the image, in any order and on any thread, before bound().
+  void count(const FireflyInputs& in, const FireflyOutputs& out, const Tile& area);
+  /// Returns how many pixels it bounded.
+  std::int64_t bound(const FireflyInputs& in, const FireflyOutputs& out);
+  /// What a new pixel of each block of 8 x 8 may be as bright as; infinite in blocks that no new
+  /// pixel is near.
+  [[nodiscard]] const Plane<float>& brightness() const { return brightness_; }
 
  private:
   /// Of a block and its neighbors.
   struct Region {
     bool is_steady;    // outliers are few
+    bool is_fresh;     // there are new pixels
     float brightness;  // that a new pixel may have
   };
 
-  [[nodiscard]] float reach(const FireflyInputs& in, int x, int y) const;
+  [[nodiscard]] float deviation(const FireflyInputs& in, int x, int y) const;
+  [[nodiscard]] float step(const FireflyInputs& in, int x, int y) const;
   [[nodiscard]] Region region(const Tile& tile) const;
-  [[nodiscard]] int bound_block(const FireflyInputs& in, const Tile& tile, Planes<3>& light,
-                                Plane<float>& residual) const;
+  [[nodiscard]] int bound_block(const FireflyInputs& in, const Tile& tile,
+                                const FireflyOutputs& out);
 
   FireflyOptions options_;
-  TileGrid grid_;  // of blocks
+  TileGrid grid_;            // of blocks
+  Plane<float> brightness_;  // of blocks
   std::vector<FireflyBlock> blocks_;
   std::vector<int> bounded_;  // per row of blocks
 };

@@ -31,8 +31,8 @@ V Expected(V used, V variance, V samples, V age, V prediction) {
   return hn::MulAdd(light, light, hn::Mul(variance, hn::Add(hn::Div(one, s), hn::Div(one, n))));
 }
 
-FireflyBlock CountFireflies(const FireflyInputs& in, float deviations, const Planes<3>& light,
-                            const Plane<float>& residual, const Tile& block) {
+FireflyBlock CountFireflies(const FireflyInputs& in, float deviations, const FireflyOutputs& out,
+                            const Tile& block) {
   const D d;
   const int lanes = static_cast<int>(hn::Lanes(d));
   const V zero = hn::Zero(d), square = hn::Set(d, deviations * deviations);
@@ -41,15 +41,16 @@ FireflyBlock CountFireflies(const FireflyInputs& in, float deviations, const Pla
     for (int x = block.x0; x < block.x1; x += lanes) {
       const auto load = [&](const Plane<float>& plane) { return hn::LoadU(d, plane.row(y) + x); };
       const auto inside = hn::FirstN(d, static_cast<std::size_t>(block.x1 - x));
-      const V known = hn::IfThenElseZero(inside, load(in.confirmed));
+      const V known = hn::IfThenElseZero(inside, load(out.confirmed));
       const V samples = hn::IfThenElseZero(inside, load(in.samples));
       const auto confirmed = hn::Gt(known, zero), usable = hn::Gt(samples, zero);
       const V prediction =
           Luminance(load(in.prediction[0]), load(in.prediction[1]), load(in.prediction[2]));
       const V expected = Expected(known, load(in.variance), samples, load(in.age), prediction);
-      const V r = load(residual);
+      const V r = load(out.residual);
       const auto outlier = hn::And(confirmed, hn::Gt(hn::Mul(r, r), hn::Mul(square, expected)));
-      const V shown = hn::Abs(Luminance(load(light[0]), load(light[1]), load(light[2])));
+      const V shown =
+          hn::Abs(Luminance(load(out.light[0]), load(out.light[1]), load(out.light[2])));
       const V root = hn::Sqrt(hn::IfThenElseZero(usable, shown));
       counts.confirmed += static_cast<int>(hn::CountTrue(d, confirmed));
       counts.outliers += static_cast<int>(hn::CountTrue(d, outlier));
@@ -70,10 +71,10 @@ namespace eigenlight {
 
 HWY_EXPORT(CountFireflies);
 
-FireflyBlock count_fireflies(const FireflyInputs& in, float deviations, const Planes<3>& light,
-                             const Plane<float>& residual, const Tile& block) {
+FireflyBlock count_fireflies(const FireflyInputs& in, float deviations, const FireflyOutputs& out,
+                             const Tile& block) {
   const FloatTrapsOff lanes_behind_masks_may_hold_anything;
-  return HWY_DYNAMIC_DISPATCH(CountFireflies)(in, deviations, light, residual, block);
+  return HWY_DYNAMIC_DISPATCH(CountFireflies)(in, deviations, out, block);
 }
 
 }  // namespace eigenlight

@@ -20,7 +20,7 @@ struct InnovationInputs {
   const Plane<float>& residual;   ///< luminance of u - prediction
   const Plane<float>& confirmed;  ///< 1 where the residual means something, else 0
   const Plane<float>& age;        ///< of the history
-  const Plane<float>& samples;    ///< this frame's samples over its regular number, >= 1
+  const Plane<float>& samples;    ///< this frame's samples over its regular number; 0: not usable
 };
 
 struct InnovationOutputs {
@@ -34,9 +34,9 @@ struct InnovationOutputs {
 /// this frame's mean over s times the regular samples by v/s, so the Kalman gain that balances them
 /// is
 ///   w = (v/n + b^2) / (v/n + b^2 + v/s),   and the new age s/w, at most max(max_age, s).
-/// Without bias, or with N = 1, that is n + s. New pixels start at age s. Unconfirmed pixels (no
-/// usable sample) keep their age. The variance of one frame is a running mean of v over min(new
-/// age / s, 16) frames: where history is dropped, so is its variance.
+/// Without bias, or with N = 1, that is n + s. So it is at unconfirmed pixels: new ones start at
+/// age s, those without usable sample (s = 0) keep theirs. The variance of one frame is a running
+/// mean of v over min(new age / s, 16) frames: where history is dropped, so is its variance.
 void innovation_tile(const InnovationInputs& in, const InnovationOptions& options, const Tile& tile,
                      const InnovationOutputs& out);
 

@@ -98,8 +98,8 @@ void FinishRow(const InnovationInputs& in, const InnovationOptions& options, con
     const float max_age = larger(options.max_age, s);
     const float tested = smaller(s / larger(weight, s / (2.0f * max_age)), max_age);
     // Alone there is no spread to test a mean against. A new pixel starts; one without usable
-    // sample waits.
-    const float unconfirmed = age > 0.0f ? age : samples;
+    // sample waits, as it has samples 0.
+    const float unconfirmed = smaller(age + samples, larger(options.max_age, samples));
     const float lone = smaller(n + s, max_age);
     new_age[i] = confirmed ? (alone ? lone : tested) : unconfirmed;
     // The memory of the variance is that of the light, but no longer than 16 frames.

@@ -29,6 +29,7 @@ class LightMemory {
   LightMemory(Extent extent, int bases);
 
   [[nodiscard]] int bases() const { return bases_; }
+  [[nodiscard]] bool is_used(int k) const { return in_use_[static_cast<std::size_t>(k)] != 0; }
   /// Bases in use: slots [0, active()) may hold energy.
   [[nodiscard]] int active() const;
   /// Expected delta_k^2, entry tile * K + k: M_kk, and 0 for k = 0 and for free slots.

@@ -16,6 +16,8 @@ namespace {
 using Line = float[kSegment];
 
 constexpr float kLargest = std::numeric_limits<float>::max();
+// Of the largest usable light; a gain may ask for more than float can hold.
+constexpr float kLargestVariance = kLargestLight * kLargestLight;
 
 // Plain loops over the pixels of a row: compiled once for each instruction set, they vectorize.
 void PredictTile(const BasisField& bases, const CoefficientField& coefficients,
@@ -44,6 +46,7 @@ void PredictTile(const BasisField& bases, const CoefficientField& coefficients,
     float* residual = out.residual.at(tile.x0, y);
     float* known = out.confirmed.at(tile.x0, y);
     float* age = out.age.at(tile.x0, y);
+    float* variance = out.variance.at(tile.x0, y);
     for (int i = 0; i < count; ++i) {
       const float r = 0.2126f * (u[0][i] - p[0][i]) + 0.7152f * (u[1][i] - p[1][i]) +
                       0.0722f * (u[2][i] - p[2][i]);
@@ -52,6 +55,8 @@ void PredictTile(const BasisField& bases, const CoefficientField& coefficients,
       residual[i] = confirmed ? r : 0.0f;
       known[i] = confirmed ? 1.0f : 0.0f;
       age[i] = rows.age[i];
+      const float scaled = coefficient[0][i] * variance[i] * coefficient[0][i];
+      variance[i] = scaled < kLargestVariance ? scaled : kLargestVariance;
     }
   }
 }

@@ -32,7 +32,8 @@ struct ResidualCells {
   explicit ResidualCells(Extent pixels);
 
   /// Cells as a frame of their own, of which only camera and surface are set: each has the geometry
-  /// of its upper left pixel, and id 0 if none of its pixels is confirmed.
+  /// of its upper left pixel, but id 0 and depth +inf, as where there is no surface, if none of its
+  /// pixels is confirmed: what says nothing must not count as a residual of 0.
   Frame guides;
   Planes<3> mean;      ///< of u - prediction over the confirmed pixels
   Plane<float> noise;  ///< variance of the mean's luminance: sum v (1/s + 1/n) / count^2

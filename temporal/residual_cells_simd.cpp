@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 
 #include "reproject/taps.h"
 #include "temporal/residual_cells.h"
@@ -156,7 +157,10 @@ void LoadCellVector(const CorrectionInputs& in, const Planes<3>& prediction, con
   }
   hn::StoreU(hn::Mul(noise, hn::Mul(share, share)), d, cells.noise.row(y) + x);
   hn::StoreU(count, d, cells.count.row(y) + x);
-  hn::StoreU(LoadQuad(d, in.guides.surface.depth, place).at[0], d,
+  // The filter knows by its depth that a cell has nothing to give.
+  const VB depth = LoadQuad(d, in.guides.surface.depth, place).at[0];
+  const VB infinite = hn::Set(d, std::numeric_limits<float>::infinity());
+  hn::StoreU(hn::IfThenElse(hn::Gt(count, hn::Zero(d)), depth, infinite), d,
              cells.guides.surface.depth.row(y) + x);
 }
 

@@ -29,11 +29,18 @@ struct SignalCounts {
 /// its channels' magnitudes is at most kLargestLight.
 SignalCounts merge_samples(const SignalInputs& in, const Tile& tile, const SignalOutputs& out);
 
+struct FreshInputs {
+  const Frame& frame;
+  const Plane<float>& samples;     ///< as merge_samples leaves it, for the whole image
+  const Plane<float>& age;         ///< of the history
+  const Plane<float>& brightness;  ///< of blocks of 8 x 8 pixels, for the whole image
+};
+
 /// One frame's variance at new pixels (age 0): that of luminance over the usable pixels of the 7 x
 /// 7 around, whose structure counts as noise until history tells them apart; 0 where there is but
-/// one. `samples` as merge_samples leaves it, for the whole image.
-void fresh_variance(const Frame& frame, const Plane<float>& samples, const Plane<float>& age,
-                    const Tile& tile, Plane<float>& variance);
+/// one. No luminance counts for more than its block's `brightness` (FireflyBound): a firefly in
+/// the first frame must not make room for all that follow.
+void fresh_variance(const FreshInputs& in, const Tile& tile, Plane<float>& variance);
 
 struct EstimateInputs {
   const Plane<std::uint32_t>& id;

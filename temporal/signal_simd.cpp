@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "reproject/taps.h"
+#include "temporal/firefly_bound.h"
 #include "temporal/signal.h"
 #include "temporal/tile_sums.h"
 
@@ -92,20 +93,24 @@ struct Sums {
 };
 
 // Window sums of row y along x for the pixels of the tile.
-void SumRow(const Frame& frame, const Plane<float>& samples, const Tile& tile, int y, Sums& sums) {
+void SumRow(const FreshInputs& in, const Tile& tile, int y, Sums& sums) {
+  const Frame& frame = in.frame;
   alignas(64) double count[kSegment + 2 * kRadius] = {}, value[kSegment + 2 * kRadius] = {};
   const int first = std::max(tile.x0 - kRadius, 0);
-  const int last = std::min(tile.x1 + kRadius, samples.width());
+  const int last = std::min(tile.x1 + kRadius, in.samples.width());
   const int shift = first - (tile.x0 - kRadius);
-  const float* used = samples.at(first, y);
+  const float* used = in.samples.at(first, y);
+  const float* brightness = in.brightness.row(y / kFireflyBlock);
   const float* u[3] = {frame.indirect[0].at(first, y), frame.indirect[1].at(first, y),
                        frame.indirect[2].at(first, y)};
   for (int i = 0; i < last - first; ++i) {
     const bool usable = used[i] > 0.0f;
     const double l = 0.2126 * static_cast<double>(u[0][i]) + 0.7152 * static_cast<double>(u[1][i]) +
                      0.0722 * static_cast<double>(u[2][i]);
+    const double most = static_cast<double>(brightness[(first + i) / kFireflyBlock]);
+    const double below = l < most ? l : most, bounded = below > -most ? below : -most;
     count[shift + i] = usable ? 1.0 : 0.0;
-    value[shift + i] = usable ? l : 0.0;
+    value[shift + i] = usable ? bounded : 0.0;
   }
   sums = {};
   for (int j = 0; j < kWindow; ++j) {
@@ -135,19 +140,18 @@ std::array<int, 2> FreshRows(const Frame& frame, const Plane<float>& age, const 
   return rows;
 }
 
-void FreshVariance(const Frame& frame, const Plane<float>& samples, const Plane<float>& age,
-                   const Tile& tile, Plane<float>& variance) {
-  const auto [top, bottom] = FreshRows(frame, age, tile);
+void FreshVariance(const FreshInputs& in, const Tile& tile, Plane<float>& variance) {
+  const auto [top, bottom] = FreshRows(in.frame, in.age, tile);
   if (bottom < 0) return;
   // A ring of row sums: each row of the window is summed once.
   std::array<Sums, kWindow> ring{};
-  const int height = samples.height();
+  const int height = in.samples.height();
   const auto slot = [](int y) { return static_cast<std::size_t>((y + kWindow) % kWindow); };
   const auto fill = [&](int y) {
     if (y < 0 || y >= height) {
       ring[slot(y)] = {};
     } else {
-      SumRow(frame, samples, tile, y, ring[slot(y)]);
+      SumRow(in, tile, y, ring[slot(y)]);
     }
   };
   for (int y = top - kRadius; y < top + kRadius; ++y) fill(y);
@@ -161,8 +165,8 @@ void FreshVariance(const Frame& frame, const Plane<float>& samples, const Plane<
         window.square[i] += row.square[i];
       }
     }
-    const float* n = age.at(tile.x0, y);
-    const std::uint32_t* id = frame.surface.id.at(tile.x0, y);
+    const float* n = in.age.at(tile.x0, y);
+    const std::uint32_t* id = in.frame.surface.id.at(tile.x0, y);
     float* out = variance.at(tile.x0, y);
     for (int i = 0; i < tile.x1 - tile.x0; ++i) {
       const auto at = static_cast<std::size_t>(i);
@@ -196,10 +200,9 @@ void estimate_variance(const EstimateInputs& in, const Tile& tile, const Estimat
   HWY_DYNAMIC_DISPATCH(EstimateVariance)(in, tile, out);
 }
 
-void fresh_variance(const Frame& frame, const Plane<float>& samples, const Plane<float>& age,
-                    const Tile& tile, Plane<float>& variance) {
+void fresh_variance(const FreshInputs& in, const Tile& tile, Plane<float>& variance) {
   EL_DCHECK(tile.x1 - tile.x0 <= kSegment);
-  HWY_DYNAMIC_DISPATCH(FreshVariance)(frame, samples, age, tile, variance);
+  HWY_DYNAMIC_DISPATCH(FreshVariance)(in, tile, variance);
 }
 
 }  // namespace eigenlight

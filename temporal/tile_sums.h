@@ -24,10 +24,17 @@ inline constexpr float kOutlier = 8.0f;
 struct TileSums {
   std::array<double, kMaxBases*(kMaxBases + 1) / 2> gram{};  ///< <V_i, V_j>, packed
   std::array<double, kMaxBases> innovation{};                ///< <V_i, r>
-  std::array<double, kMaxBases> spread{};  ///< sum_p m^2 (V_i . r)^2: variance of innovation[i]
-  double pixels = 0.0;                     ///< with m > 0
+  std::array<double, kMaxBases> spread{};                    ///< sum_p m^2 (V_i . r)^2
+  std::array<double, kMaxBases> lean{};                      ///< sum_p m^2 (V_i . r) (V_i . V_0)
+  std::array<double, kMaxBases> reach{};                     ///< sum_p m^2 (V_i . V_0)^2
+  double pixels = 0.0;                                       ///< with m > 0
 
   TileSums& operator+=(const TileSums& other);
+  /// Variance of innovation[i] where the light's gain is 1 + delta, fitted to the same pixels:
+  ///   sum_p m^2 (V_i . (r - delta V_0))^2 / (1 - 3 h),   h = sum_p (m V_0 . V_0)^2 / <V_0, V_0>^2.
+  /// 1 / h pixels' worth have 1 / h - 1 degrees of freedom, and the last factor is the variance of
+  /// Student's t. With no more than three of them it is the spread, about a gain of 1.
+  [[nodiscard]] double scatter(std::size_t i, double delta) const;
 };
 
 /// What the sums are taken over.
@@ -42,7 +49,7 @@ struct SumInputs {
 ///   m = n / (n + 1) / (variance + 0.01 * luminance(V_0)^2)
 /// (the inverse of its expected squared innovation, n its age), and with 0 where it has no history
 /// or u is not finite or beyond kLargestLight. Where m luminance(r)^2 > kOutlier^2, m is divided by
-/// their ratio, unless more than an eighth of the row's pixels are such outliers: a few fireflies
+/// their ratio, unless more than an eighth of the tile's pixels are such outliers: a few fireflies
 /// are no gain, a light that changed is. Sums along a row are in float, over rows in double.
 void accumulate_tile(const SumInputs& in, const Tile& tile, TileSums& sums);
 

@@ -24,19 +24,17 @@ struct Row {
   int vectors;  // whole vectors of lanes that cover the row
 };
 
-// Takes influence from pixels that are off by far more than expected, unless that is many of them.
-void HoldBackOutliers(int count, Row& row) {
-  alignas(64) float bounded[kSegment];
-  int used = 0, outliers = 0;
+// Takes influence from pixels that are off by far more than expected. Returns how many there are.
+int HoldBackOutliers(int count, Row& row) {
+  int outliers = 0;
   for (int i = 0; i < count; ++i) {
     const float off =
         0.2126f * row.residual[0][i] + 0.7152f * row.residual[1][i] + 0.0722f * row.residual[2][i];
     const float excess = row.weight[i] * off * off * (1.0f / (kOutlier * kOutlier));
-    bounded[i] = row.weight[i] / (excess > 1.0f ? excess : 1.0f);
-    used += row.weight[i] > 0.0f ? 1 : 0;
+    row.weight[i] /= excess > 1.0f ? excess : 1.0f;
     outliers += excess > 1.0f ? 1 : 0;
   }
-  if (outliers > 0 && 8 * outliers <= used) std::copy_n(bounded, count, row.weight);
+  return outliers;
 }
 
 void LoadRow(const SumInputs& in, const Tile& segment, Row& row) {
@@ -73,7 +71,6 @@ void LoadRow(const SumInputs& in, const Tile& segment, Row& row) {
     row.weight[i] = 0.0f;
     for (auto& channel : row.residual) channel[i] = 0.0f;
   }
-  HoldBackOutliers(count, row);
 }
 
 // sum_c a_c b_c of one vector of pixels; the channels of a and b stand `a_step`, `b_step` apart.
@@ -102,27 +99,47 @@ void AddRow(const Row& row, int bases, int active, TileSums& sums) {
       }
       sums.gram[static_cast<std::size_t>(packed(k, j))] += total(sum);
     }
-    VF innovation = hn::Zero(d), spread = hn::Zero(d);
+    VF innovation = hn::Zero(d), spread = hn::Zero(d), lean = hn::Zero(d), reach = hn::Zero(d);
     for (int i = 0; i < row.vectors * lanes; i += lanes) {
+      const VF weight = hn::Load(d, row.weight + i);
       const VF dot = DotChannels(Shift(values + j, i), bases, Shift(row.residual, i), 1);
-      const VF weighted = hn::Mul(hn::Load(d, row.weight + i), dot);
+      const VF first = DotChannels(Shift(values + j, i), bases, Shift(values, i), bases);
+      const VF weighted = hn::Mul(weight, dot), along = hn::Mul(weight, first);
       innovation = hn::Add(innovation, weighted);
       spread = hn::MulAdd(weighted, weighted, spread);
+      lean = hn::MulAdd(weighted, along, lean);
+      reach = hn::MulAdd(along, along, reach);
     }
-    sums.innovation[static_cast<std::size_t>(j)] += total(innovation);
-    sums.spread[static_cast<std::size_t>(j)] += total(spread);
+    const auto at = static_cast<std::size_t>(j);
+    sums.innovation[at] += total(innovation);
+    sums.spread[at] += total(spread);
+    sums.lean[at] += total(lean);
+    sums.reach[at] += total(reach);
   }
 }
 
-void AccumulateTile(const SumInputs& in, const Tile& tile, TileSums& sums) {
+// Returns how many outliers the tile has.
+int AddTile(const SumInputs& in, const Tile& tile, bool is_bounded, TileSums& sums) {
   Row row;
+  int outliers = 0;
   for (int y = tile.y0; y < tile.y1; ++y) {
     LoadRow(in, {tile.x0, y, tile.x1, y + 1, tile.index}, row);
     const int count = tile.x1 - tile.x0;
     const auto used = std::count_if(row.weight, row.weight + count, [](float m) { return m > 0; });
     if (used == 0) continue;
     sums.pixels += static_cast<double>(used);
+    if (is_bounded) outliers += HoldBackOutliers(count, row);
     AddRow(row, in.bases.bases(), std::min(in.active, in.bases.bases()), sums);
+  }
+  return outliers;
+}
+
+void AccumulateTile(const SumInputs& in, const Tile& tile, TileSums& sums) {
+  TileSums bounded;
+  if (8.0 * AddTile(in, tile, true, bounded) <= bounded.pixels) {
+    sums += bounded;
+  } else {
+    (void)AddTile(in, tile, false, sums);
   }
 }
 
@@ -148,8 +165,17 @@ TileSums& TileSums::operator+=(const TileSums& other) {
   add(gram, other.gram);
   add(innovation, other.innovation);
   add(spread, other.spread);
+  add(lean, other.lean);
+  add(reach, other.reach);
   pixels += other.pixels;
   return *this;
+}
+
+double TileSums::scatter(std::size_t i, double delta) const {
+  const double freedom = 1.0 - 3.0 * reach[0] / (gram[0] * gram[0]);
+  if (!(freedom > 0.0)) return spread[i];
+  // The terms cancel where the gain explains all: rounding may leave less than nothing.
+  return std::max(spread[i] + delta * (delta * reach[i] - 2.0 * lean[i]), 0.0) / freedom;
 }
 
 }  // namespace eigenlight

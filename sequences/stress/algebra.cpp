@@ -4,11 +4,9 @@
 #include <functional>
 #include <limits>
 
-#include "reproject/basis_field.h"
-#include "reproject/surface_history.h"
+#include "sequences/stress/eigen_state.h"
 #include "sequences/stress/measures.h"
 #include "sequences/stress/stress_case.h"
-#include "temporal/light_memory.h"
 
 namespace eigenlight {
 namespace {
@@ -90,34 +88,12 @@ BasisField three_bases(const BasisField& history) {
 
 // Rewrites the bases of an `eigenlight` history, which has three in use afterwards.
 void edit_bases(StressRun& run, const std::function<void(BasisField&)>& edit) {
-  StateWriter saved;
-  run.denoiser().save(saved);
-  StateReader in({saved.bytes().data(), saved.bytes().size()});
-  SurfaceHistory surfaces(kExtent);
-  LightMemory memory(kExtent, 3);
-  Plane<float> variance;
-  int version = 0, bases = 0, used = 0;
-  in.value("eigenlight", version);
-  surfaces.load(in);
-  in.value("bases", bases);
-  in.value("bases in use", used);
-  BasisField history(kExtent, used);
-  in.plane("basis values", history.data());
-  in.plane("variance", variance);
-  memory.load(in);
-  BasisField field = three_bases(history);
-  edit(field);
-  for (const int k : {1, 2}) memory.born(k);
-  StateWriter out;
-  out.value("eigenlight", version);
-  surfaces.save(out);
-  out.value("bases", bases);
-  out.value("bases in use", field.bases());
-  out.plane("basis values", field.data());
-  out.plane("variance", variance);
-  memory.save(out);
-  StateReader edited({out.bytes().data(), out.bytes().size()});
-  run.denoiser().load(edited);
+  EigenState state(kExtent, 3);
+  state.take(run.denoiser());
+  state.field = three_bases(state.field);
+  edit(state.field);
+  for (const int k : {1, 2}) state.memory.born(k);
+  state.give(run.denoiser());
 }
 
 // V_k = a_k V_0 + b_k times a checkered V_0, which is nearly orthogonal to it.

@@ -38,6 +38,7 @@ struct StressCase {
 [[nodiscard]] std::vector<StressCase> long_cases();
 [[nodiscard]] std::vector<StressCase> statistics_cases();
 [[nodiscard]] std::vector<StressCase> determinism_cases();
+[[nodiscard]] std::vector<StressCase> basis_cases();
 
 /// The worst figure that was noted in `lab`, against `bound`.
 [[nodiscard]] inline StressFinding worst_of(const Lab& lab, double bound) {

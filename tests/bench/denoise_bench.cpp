@@ -49,6 +49,7 @@ struct Stages {
         estimate(make_planes<3>(extent)),
         variance(extent),
         warped_variance(extent),
+        predicted_variance(extent),
         samples(extent),
         residual(extent),
         confirmed(extent),
@@ -100,7 +101,8 @@ struct Stages {
   }
   void predict() {
     for_each_tile(tiles, [&](const Tile& tile) {
-      predict_tile(warped, coefficients, light, tile, {prediction, residual, confirmed, age});
+      predict_tile(warped, coefficients, light, tile,
+                   {prediction, residual, confirmed, age, predicted_variance});
     });
   }
   void test_innovation() {
@@ -124,7 +126,8 @@ struct Stages {
   CoefficientField coefficients, learning;
   std::vector<TileSums> sums;
   Planes<3> light, prediction, correction, estimate;
-  Plane<float> variance, warped_variance, samples, residual, confirmed, age, new_age;
+  Plane<float> variance, warped_variance, predicted_variance, samples, residual, confirmed, age,
+      new_age;
 };
 
 void reproject(benchmark::State& state) {

@@ -16,6 +16,9 @@ struct AtrousImage {
   Extent extent;
   std::array<std::vector<double>, 4> values;
 
+  explicit AtrousImage(Extent size) : extent(size) {
+    for (auto& plane : values) plane.assign(size.pixels(), 0.0);
+  }
   AtrousImage(const Planes<3>& color, const Plane<float>& variance) : extent(variance.extent()) {
     for (std::size_t c = 0; c < 4; ++c) {
       const Plane<float>& plane = c < 3 ? color[c] : variance;

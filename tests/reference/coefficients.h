@@ -24,6 +24,8 @@ inline TileSums window(std::span<const TileSums> sums, const TileGrid& grid, int
     for (std::size_t k = 0; k < total.spread.size(); ++k) {
       total.innovation[k] += w * part.innovation[k];
       total.spread[k] += w * w * part.spread[k];
+      total.lean[k] += w * w * part.lean[k];
+      total.reach[k] += w * w * part.reach[k];
     }
   }
   return total;
@@ -54,6 +56,15 @@ inline std::vector<std::vector<double>> inverse(std::vector<std::vector<double>>
   return a;
 }
 
+/// Variance of <V_i, u - V_0> about the gain 1 + delta.
+inline double scatter(const TileSums& total, std::size_t i, double delta) {
+  const double pixels = total.gram[0] * total.gram[0] / total.reach[0];
+  if (pixels <= 3.0) return total.spread[i];
+  const double about =
+      total.spread[i] - 2.0 * delta * total.lean[i] + delta * delta * total.reach[i];
+  return std::max(about, 0.0) * pixels / (pixels - 3.0);
+}
+
 /// How far deltas are shrunk: `expected` are the K mean squares of the tile, or none.
 struct Shrinkage {
   ShrinkOptions options;
@@ -74,10 +85,13 @@ inline std::vector<double> coefficients(const TileSums& total, const Shrinkage& 
   const auto inverted = inverse(gram);
   std::vector<double> delta(n, 0.0);
   for (std::size_t k = 0; k < n; ++k) {
+    for (std::size_t i = 0; i < n; ++i) delta[k] += inverted[k][i] * total.innovation[i];
+  }
+  const double fitted = delta[0];
+  for (std::size_t k = 0; k < n; ++k) {
     double variance = 0.0;
     for (std::size_t i = 0; i < n; ++i) {
-      delta[k] += inverted[k][i] * total.innovation[i];
-      variance += inverted[k][i] * inverted[k][i] * total.spread[i];
+      variance += inverted[k][i] * inverted[k][i] * scatter(total, i, fitted);
     }
     if (delta[k] == 0.0) continue;
     double kept = std::max(0.0, 1.0 - shrinkage.options.noise * variance / (delta[k] * delta[k]));

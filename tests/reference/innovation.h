@@ -30,10 +30,8 @@ inline Innovation innovation(const InnovationInputs& in, const InnovationOptions
     sum += e;
   });
   const double n = in.age(p.x, p.y), s = in.samples(p.x, p.y);
-  if (!(n > 0.0)) return {s, variance};
-  if (!(in.confirmed(p.x, p.y) > 0.0f)) return {n, variance};
   const double oldest = std::max(static_cast<double>(options.max_age), s);
-  if (count == 1.0) return {std::min(n + s, oldest), variance};
+  if (!(in.confirmed(p.x, p.y) > 0.0f) || count == 1.0) return {std::min(n + s, oldest), variance};
   const double mu = sum / count;
   double v = 0.0;
   over_window([&](double e) { v += (e - mu) * (e - mu) / count; });

@@ -12,6 +12,7 @@ namespace eigenlight::reference {
 struct Prediction {
   std::array<double, 3> light{};
   double residual = 0.0;
+  double variance_factor = 0.0;
   bool confirmed = false;
 };
 
@@ -26,6 +27,8 @@ inline Prediction predict(const BasisField& bases, const CoefficientField& coeff
     }
     r[c] = light[static_cast<std::size_t>(c)](x, y) - sum;
   }
+  const double gain = coefficient_at(coefficients, x, y, 0);
+  out.variance_factor = gain * gain;
   const double residual = luminance(r[0], r[1], r[2]);
   out.confirmed = bases.age(x, y) > 0.0f && std::isfinite(residual);
   out.residual = out.confirmed ? residual : 0.0;

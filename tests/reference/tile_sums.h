@@ -41,34 +41,42 @@ inline double sum_excess(const SumPixel& pixel) {
   return pixel.weight * off * off;
 }
 
-/// The pixels of a row of a tile, few outliers held back.
-inline std::vector<SumPixel> sum_row(const SumInputs& in, const Tile& tile, int y) {
-  std::vector<SumPixel> row;
-  for (int x = tile.x0; x < tile.x1; ++x) row.push_back(sum_pixel(in, x, y));
+/// The pixels of a tile, row by row, few outliers held back.
+inline std::vector<SumPixel> sum_pixels(const SumInputs& in, const Tile& tile) {
+  std::vector<SumPixel> pixels;
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    for (int x = tile.x0; x < tile.x1; ++x) pixels.push_back(sum_pixel(in, x, y));
+  }
   int used = 0, outliers = 0;
-  for (const SumPixel& pixel : row) {
+  for (const SumPixel& pixel : pixels) {
     used += pixel.weight > 0.0 ? 1 : 0;
     outliers += sum_excess(pixel) > 1.0 ? 1 : 0;
   }
-  if (8 * outliers > used) return row;
-  for (SumPixel& pixel : row) pixel.weight /= std::max(1.0, sum_excess(pixel));
-  return row;
+  if (8 * outliers > used) return pixels;
+  for (SumPixel& pixel : pixels) pixel.weight /= std::max(1.0, sum_excess(pixel));
+  return pixels;
 }
 
 inline TileSums tile_sums(const SumInputs& in, const Tile& tile) {
   TileSums sums;
   const BasisField& v = in.bases;
+  const std::vector<SumPixel> pixels = sum_pixels(in, tile);
+  auto next = pixels.begin();
   for (int y = tile.y0; y < tile.y1; ++y) {
-    const std::vector<SumPixel> row = sum_row(in, tile, y);
     for (int x = tile.x0; x < tile.x1; ++x) {
-      const auto& [m, r] = row[static_cast<std::size_t>(x - tile.x0)];
+      const auto& [m, r] = *next++;
       if (!(m > 0.0)) continue;
       sums.pixels += 1.0;
       for (int j = 0; j < v.bases(); ++j) {
-        double along = 0.0;
-        for (int c = 0; c < 3; ++c) along += v.value(x, y, c, j) * r[c];
+        double along = 0.0, first = 0.0;
+        for (int c = 0; c < 3; ++c) {
+          along += v.value(x, y, c, j) * r[c];
+          first += static_cast<double>(v.value(x, y, c, j)) * v.value(x, y, c, 0);
+        }
         sums.innovation[static_cast<std::size_t>(j)] += m * along;
         sums.spread[static_cast<std::size_t>(j)] += m * m * along * along;
+        sums.lean[static_cast<std::size_t>(j)] += m * m * along * first;
+        sums.reach[static_cast<std::size_t>(j)] += m * m * first * first;
         for (int i = 0; i <= j; ++i) {
           double dot = 0.0;
           for (int c = 0; c < 3; ++c) {

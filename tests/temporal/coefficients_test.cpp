@@ -129,6 +129,38 @@ TEST(SolveCoefficients, RecoversAKnownGain) {
   }
 }
 
+// As offsets from 1 gains are good to 3e-8.
+TEST(SolveCoefficients, RecoversTheGainOfALightThatAllButWentOut) {
+  for (const int bases : {1, 3}) {
+    for (const float gain : {1e-6f, 1e-3f, 1e6f}) {
+      Scene scene({65, 33}, bases);
+      for (int y = 0; y < 33; ++y) {
+        for (int x = 0; x < 65; ++x) {
+          const float noise = PixelRandom(7, x, y).between(0.2f, 1.8f);
+          for (int c = 0; c < 3; ++c) {
+            const float light = scene.field.value(x, y, c, 0);
+            scene.frame.indirect[static_cast<std::size_t>(c)](x, y) = gain * noise * light;
+          }
+        }
+      }
+      scene.solve();
+      for (int i = 0; i < scene.coefficients.grid().count(); ++i) {
+        EXPECT_NEAR(1.0f + scene.coefficients.tile(i)[0], gain, 0.1f * gain) << bases;
+      }
+    }
+  }
+}
+
+// Three pixels always agree on something; many do on a gain of their own noise alone.
+TEST(SolveCoefficients, TakeNoGainFromThreePixels) {
+  for (std::uint32_t seed = 0; seed < 50; ++seed) {
+    Scene scene({3, 1}, 1);
+    scene.set_light({0.0f}, 0.5f, seed);
+    scene.solve();
+    EXPECT_EQ(scene.coefficients.tile(0)[0], 0.0f) << seed;
+  }
+}
+
 TEST(SolveCoefficients, RecoversAKnownMixtureWithoutShrinking) {
   Scene scene({191, 107}, 3);
   scene.set_light({0.5f, -0.7f, 0.3f}, 0.0f);

@@ -138,6 +138,26 @@ TEST(Correction, UnconfirmedPixelsNeitherGiveNorTake) {
   EXPECT_NEAR(scene.prediction[0](31, 15), 3.0f, 0.4f);
 }
 
+// Cells of pixels without history once gave a residual of 0, which pulled down what is beside them.
+TEST(Correction, ARegionWithoutHistoryDoesNotPullDownWhatIsBesideIt) {
+  Scene whole({96, 64}), half({96, 64});
+  whole.set_light(3.0f);
+  half.set_light(3.0f);
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 40; x < 96; ++x) half.confirmed(x, y) = half.residual(x, y) = 0.0f;
+  }
+  (void)whole.run();
+  (void)half.run();
+  double wanted = 0.0, found = 0.0;
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 36; x < 40; ++x) {
+      wanted += static_cast<double>(whole.prediction[1](x, y)) / 256;
+      found += static_cast<double>(half.prediction[1](x, y)) / 256;
+    }
+  }
+  EXPECT_NEAR(found, wanted, 0.1);
+}
+
 TEST(Correction, RunsAtAnySizeWithTheSameBitsForAnyNumberOfThreads) {
   for (const Extent extent : kSweepExtents) {
     Scene one(extent), three(extent);

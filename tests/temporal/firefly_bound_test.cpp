@@ -16,6 +16,7 @@ struct Wall {
   Planes<3> prediction = make_planes<3>(kExtent), light = make_planes<3>(kExtent);
   Plane<float> confirmed{kExtent}, age{kExtent}, samples{kExtent}, variance{kExtent},
       residual{kExtent};
+  FireflyBound bound{kExtent, {}};
 
   Wall() {
     for (auto& plane : prediction) plane.fill(1.0f);
@@ -30,22 +31,37 @@ struct Wall {
     residual(x, y) = value - 1.0f;
   }
   std::int64_t process() {
-    FireflyBound bound(kExtent, {});
-    const FireflyInputs in{prediction, confirmed, age, samples, variance};
-    bound.count(in, light, residual, {0, 0, kExtent.width, kExtent.height, 0});
-    return bound.bound(in, light, residual);
+    const FireflyInputs in{prediction, age, samples, variance};
+    const FireflyOutputs out{light, residual, confirmed};
+    bound.count(in, out, {0, 0, kExtent.width, kExtent.height, 0});
+    return bound.bound(in, out);
   }
 };
 
-TEST(FireflyBound, ALoneOutlierGoesEightDeviationsAndKeepsItsHue) {
+// With a history of n frames, the mean moves by 1 / (n + 1) of the sample's distance.
+TEST(FireflyBound, ALoneOutlierMovesTheMeanByOneOfItsDeviations) {
+  for (const float n : {1.0f, 4.0f, 16.0f, 60.0f}) {
+    Wall p;
+    p.age.fill(n);
+    p.set(13, 9, 1000.0f);
+    EXPECT_EQ(p.process(), 1);
+    const float sigma = std::sqrt(0.01f * (1.0f + 1.0f / n) + 0.01f);
+    EXPECT_NEAR((p.light[1](13, 9) - 1.0f) / (n + 1.0f), sigma / std::sqrt(n), 1e-4f) << n;
+  }
+}
+
+TEST(FireflyBound, ALoneOutlierKeepsItsHueAndConfirmsNothing) {
   Wall p;
   p.light[0](13, 9) = 3001.0f;
   p.light[1](13, 9) = 1001.0f;
   p.light[2](13, 9) = 1.0f;
   p.residual(13, 9) = luminance(p.light, 13, 9) - 1.0f;
   EXPECT_EQ(p.process(), 1);
-  const float allowed = 8.0f * std::sqrt(0.01f * 1.25f + 0.01f);
-  EXPECT_NEAR(p.residual(13, 9), allowed, 1e-4f);
+  EXPECT_EQ(p.residual(13, 9), 0.0f);
+  EXPECT_EQ(p.confirmed(13, 9), 0.0f);
+  EXPECT_EQ(p.confirmed(14, 9), 1.0f);
+  // Of age 4: 5 / 2 deviations.
+  const float allowed = 2.5f * std::sqrt(0.01f * 1.25f + 0.01f);
   EXPECT_NEAR(luminance(p.light, 13, 9) - 1.0f, allowed, 1e-4f);
   EXPECT_NEAR((p.light[0](13, 9) - 1.0f) / (p.light[1](13, 9) - 1.0f), 3.0f, 1e-4f);
   EXPECT_EQ(p.light[2](13, 9), 1.0f);
@@ -69,6 +85,17 @@ TEST(FireflyBound, ALightThatChangesIsNoFirefly) {
   EXPECT_EQ(p.residual(12, 12), 99.0f);
 }
 
+// A twelfth of the pixels around, but a third of their own block: an edge of light that moves.
+TEST(FireflyBound, OutliersSideBySideAreNoFireflies) {
+  for (const int rows : {1, 3}) {
+    Wall p;
+    for (int y = 8; y < 8 + rows; ++y) {
+      for (int x = 8; x < 16; ++x) p.set(x, y, 100.0f);
+    }
+    EXPECT_EQ(p.process(), rows == 1 ? 8 : 0);
+  }
+}
+
 TEST(FireflyBound, NewPixelsAreHeldAgainstTheLightAroundThem) {
   Wall p;
   p.confirmed.fill(0.0f);
@@ -78,6 +105,16 @@ TEST(FireflyBound, NewPixelsAreHeldAgainstTheLightAroundThem) {
   const float root = (575.0f + 1000.0f) / 576.0f;
   EXPECT_NEAR(p.light[1](13, 9), 16.0f * root * root, 0.1f);
   EXPECT_EQ(p.light[1](14, 9), 1.0f);
+  EXPECT_NEAR(p.bound.brightness()(1, 1), 16.0f * root * root, 0.1f);
+}
+
+TEST(FireflyBound, BrightnessIsBoundedOnlyNearNewPixels) {
+  Wall p;
+  p.confirmed(39, 0) = 0.0f;
+  EXPECT_EQ(p.process(), 0);
+  EXPECT_FLOAT_EQ(p.bound.brightness()(4, 0), 16.0f);
+  EXPECT_FLOAT_EQ(p.bound.brightness()(3, 1), 16.0f);
+  EXPECT_TRUE(std::isinf(p.bound.brightness()(2, 0)));
 }
 
 TEST(FireflyBound, WhatIsNotUsableIsLeftAlone) {

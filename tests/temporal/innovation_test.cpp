@@ -59,7 +59,8 @@ Scene mixed(Extent extent) {
         scene.confirmed(x, y) = 0.0f;
         scene.residual(x, y) = 0.0f;
         scene.age(x, y) = random.uniform() < 0.5f ? 0.0f : scene.age(x, y);
-        if (scene.age(x, y) > 0.0f) scene.samples(x, y) = 0.0f;
+        // Not usable, or bounded.
+        if (scene.age(x, y) > 0.0f && random.uniform() < 0.5f) scene.samples(x, y) = 0.0f;
       }
     }
   }

@@ -22,15 +22,21 @@ CoefficientField random_coefficients(Extent extent, int bases) {
 
 struct Result {
   explicit Result(Extent extent)
-      : prediction(make_planes<3>(extent)), residual(extent), confirmed(extent), age(extent) {}
+      : prediction(make_planes<3>(extent)),
+        residual(extent),
+        confirmed(extent),
+        age(extent),
+        variance(extent) {
+    variance.fill(0.5f);
+  }
   void run(const BasisField& bases, const CoefficientField& coefficients, const Frame& frame) {
     for (int i = 0; i < coefficients.grid().count(); ++i) {
       predict_tile(bases, coefficients, frame.indirect, coefficients.grid().tile(i),
-                   {prediction, residual, confirmed, age});
+                   {prediction, residual, confirmed, age, variance});
     }
   }
   Planes<3> prediction;
-  Plane<float> residual, confirmed, age;
+  Plane<float> residual, confirmed, age, variance;
 };
 
 TEST(Predict, AgreesWithTheTwinOnEveryTarget) {
@@ -53,6 +59,7 @@ TEST(Predict, AgreesWithTheTwinOnEveryTarget) {
             ASSERT_EQ(result.confirmed(x, y), twin.confirmed ? 1.0f : 0.0f) << x << ", " << y;
             ASSERT_NEAR(result.residual(x, y), twin.residual, 5e-6) << x << ", " << y;
             ASSERT_EQ(result.age(x, y), field.age(x, y));
+            ASSERT_NEAR(result.variance(x, y), 0.5 * twin.variance_factor, 1e-6);
           }
         }
       });
@@ -75,6 +82,25 @@ TEST(Predict, WithoutHistoryIsZeroAndUnconfirmed) {
       EXPECT_EQ(result.age(x, y), 0.0f);
     }
   }
+}
+
+// A gain of 1e30 of a light of 1e-20 is light of 1e10; at a pixel beside it that had light of 1
+// float cannot hold the variance.
+TEST(Predict, NoGainMakesAVarianceInfinite) {
+  const Extent extent{5, 3};
+  const Frame frame = make_random_frame({.extent = extent, .sky = false}, 2);
+  CoefficientField coefficients(extent, 1);
+  coefficients.tile(0)[0] = 1e30f;
+  Result result(extent);
+  for_each_target([&] {
+    result.variance.fill(0.0f);
+    result.variance(1, 1) = 1.0f;
+    result.variance(2, 1) = 1e-40f;
+    result.run(BasisField(extent, 1), coefficients, frame);
+    EXPECT_EQ(result.variance(0, 0), 0.0f);
+    EXPECT_FLOAT_EQ(result.variance(1, 1), 1e36f);
+    EXPECT_NEAR(result.variance(2, 1), 1e20f, 1e16f);
+  });
 }
 
 }  // namespace

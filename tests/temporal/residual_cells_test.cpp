@@ -71,6 +71,9 @@ TEST(ResidualCells, AgreeWithTheirTwinOnEveryTarget) {
           const reference::Cell twin = reference::cell(scene.in(), scene.prediction, x, y);
           ASSERT_EQ(scene.cells.guides.surface.id(x, y), twin.id) << x << ", " << y;
           ASSERT_EQ(scene.cells.count(x, y), twin.count);
+          const float depth = scene.guides.surface.depth(2 * x, 2 * y);
+          ASSERT_EQ(scene.cells.guides.surface.depth(x, y),
+                    twin.count > 0.0 ? depth : std::numeric_limits<float>::infinity());
           ASSERT_NEAR(scene.cells.noise(x, y), twin.noise, 1e-5 * twin.noise);
           for (std::size_t c = 0; c < 3; ++c) {
             ASSERT_NEAR(scene.cells.mean[c](x, y), twin.mean[c], 1e-6);

@@ -21,7 +21,8 @@ struct Scene {
         extra_mean(make_planes<3>(extent)),
         light(make_planes<3>(extent)),
         samples(extent),
-        variance(random_plane(extent, 4, 1.0f, 2.0f)) {
+        variance(random_plane(extent, 4, 1.0f, 2.0f)),
+        brightness(random_plane({(extent.width + 7) / 8, (extent.height + 7) / 8}, 5, 0.5f, 4.0f)) {
     for (int y = 0; y < extent.height; ++y) {
       for (int x = 0; x < extent.width; ++x) {
         PixelRandom random(8, x, y);
@@ -56,7 +57,7 @@ struct Scene {
   Plane<float> age;
   Plane<std::uint8_t> extra;
   Planes<3> extra_mean, light;
-  Plane<float> samples, variance;
+  Plane<float> samples, variance, brightness;
 };
 
 void expect_merged(const Scene& scene, bool resampled, const SignalCounts& counts) {
@@ -117,7 +118,9 @@ double variance_around(const Scene& scene, int px, int py) {
     for (int x = std::max(px - 3, 0); x <= std::min(px + 3, scene.samples.width() - 1); ++x) {
       if (!(scene.samples(x, y) > 0.0f)) continue;
       const auto& u = scene.frame.indirect;
-      const double l = 0.2126 * u[0](x, y) + 0.7152 * u[1](x, y) + 0.0722 * u[2](x, y);
+      const double most = scene.brightness(x / 8, y / 8);
+      const double l =
+          std::clamp(0.2126 * u[0](x, y) + 0.7152 * u[1](x, y) + 0.0722 * u[2](x, y), -most, most);
       count += 1.0;
       sum += l;
       square += l * l;
@@ -133,7 +136,8 @@ TEST(FreshVariance, IsThatOfTheSurroundingsAtNewPixelsAloneOnEveryTarget) {
       (void)scene.merge(true);
       const Plane<float> before = scene.variance.clone();
       scene.for_each([&](const Tile& tile) {
-        fresh_variance(scene.frame, scene.samples, scene.age, tile, scene.variance);
+        fresh_variance({scene.frame, scene.samples, scene.age, scene.brightness}, tile,
+                       scene.variance);
       });
       for (int y = 0; y < extent.height; ++y) {
         for (int x = 0; x < extent.width; ++x) {

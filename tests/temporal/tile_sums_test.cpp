@@ -28,6 +28,9 @@ void expect_sums_near(const TileSums& found, const TileSums& wanted, int bases) 
                 kTolerance * std::sqrt(wanted.spread[at] * wanted.pixels) + 1e-300)
         << "basis " << j;
     EXPECT_NEAR(found.spread[at], wanted.spread[at], kTolerance * wanted.spread[at]);
+    EXPECT_NEAR(found.lean[at], wanted.lean[at],
+                kTolerance * std::sqrt(wanted.spread[at] * wanted.reach[at]));
+    EXPECT_NEAR(found.reach[at], wanted.reach[at], kTolerance * wanted.reach[at]);
     for (int i = 0; i <= j; ++i) {
       const auto ii = static_cast<std::size_t>(packed(i, i));
       const auto ij = static_cast<std::size_t>(packed(i, j));
@@ -133,6 +136,29 @@ TEST(TileSums, OfAGainKnowIt) {
   accumulate_tile({field, frame, variance}, {0, 0, 32, 32, 0}, sums);
   EXPECT_GT(sums.gram[0], 0.0);
   EXPECT_NEAR(sums.innovation[0], 0.5 * sums.gram[0], 1e-5 * sums.gram[0]);
+}
+
+// A row of nonsense is no more a light that changed than as many pixels elsewhere are.
+TEST(TileSums, HoldBackALineOfOutliersAndFollowATileOfThem) {
+  const Extent extent{32, 32};
+  Frame frame = make_random_frame({.extent = extent, .sky = false, .non_finite = false}, 2);
+  BasisField field(extent, 1);
+  field.data().fill(1.0f);
+  Plane<float> variance(extent);
+  variance.fill(0.01f);
+  const auto gain = [&](int rows) {
+    for (auto& plane : frame.indirect) {
+      plane.fill(1.0f);
+      for (int y = 0; y < rows; ++y) std::fill(plane.row(y), plane.row(y) + 32, -5.0f);
+    }
+    TileSums sums;
+    accumulate_tile({field, frame, variance}, {0, 0, 32, 32, 0}, sums);
+    return 1.0 + sums.innovation[0] / sums.gram[0];
+  };
+  for_each_target([&] {
+    EXPECT_NEAR(gain(1), 1.0, 0.02);  // not held back, 1 - 6 / 32
+    EXPECT_NEAR(gain(16), -2.0, 1e-5);
+  });
 }
 
 TEST(TileSums, PackedTriangleHasEachPairOnce) {

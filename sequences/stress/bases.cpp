@@ -1,0 +1,130 @@
+// What becomes of the bases over thousands of frames: the algebra needs them apart from each other.
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "sequences/stress/eigen_state.h"
+#include "sequences/stress/measures.h"
+#include "sequences/stress/stress_case.h"
+#include "temporal/baselines/basis_history.h"
+#include "temporal/baselines/chen2012_pca.h"
+#include "temporal/small_matrix.h"
+#include "temporal/tile_sums.h"
+
+namespace eigenlight {
+namespace {
+
+// One coefficient tile, which is its own window.
+constexpr Extent kExtent{kCoefficientTile, kCoefficientTile};
+
+// Two lamps that sweep over the plane, out of step: light of rank 3 and more.
+AnalyticOptions sweeping(int frames) {
+  AnalyticOptions options{.extent = kExtent, .frames = frames};
+  options.light = [](glm::vec2 at, int frame) {
+    const float f = static_cast<float>(frame);
+    return 1.0f + 0.7f * std::sin(0.2f * at.x + 0.13f * f) * std::sin(0.071f * f) +
+           0.2f * std::cos(0.3f * at.y - 0.09f * f);
+  };
+  return options;
+}
+
+// Largest |cosine| between two bases that have a length.
+double largest_cosine(const BasisField& field) {
+  const int bases = field.bases();
+  SmallMatrix gram = SmallMatrix::Zero(bases, bases);
+  for (int y = 0; y < field.extent().height; ++y) {
+    for (int x = 0; x < field.extent().width; ++x) {
+      for (int c = 0; c < 3; ++c) {
+        SmallVector v(bases);
+        for (int k = 0; k < bases; ++k) v[k] = static_cast<double>(field.value(x, y, c, k));
+        gram += v * v.transpose();
+      }
+    }
+  }
+  double largest = 0.0;
+  for (int i = 0; i < bases; ++i) {
+    for (int j = 0; j < i; ++j) {
+      const double length = std::sqrt(gram(i, i) * gram(j, j));
+      if (length > 0.0) largest = std::max(largest, std::abs(gram(i, j)) / length);
+    }
+  }
+  return largest;
+}
+
+// The bases that each frame works with: those of the frame before, made orthogonal. The camera
+// stands still, so that no warp comes between.
+StressFinding check_orthogonality(Lab& lab) {
+  constexpr int kBases = 5;
+  StressRun run(lab, sweeping(10'000), "chen2012", kBases);
+  ImagePca pca(kExtent, kBases);
+  while (run.step()) {
+    StateWriter saved;
+    run.denoiser().save(saved);
+    StateReader in({saved.bytes().data(), saved.bytes().size()});
+    std::uint32_t version = 0;
+    int number = 0;
+    in.value("chen2012", version);
+    in.value("number", number);
+    BasisHistory history(kExtent, kBases);
+    history.load(in);
+    pca.orthogonalize(history.bases());
+    lab.note(largest_cosine(history.bases()), fmt::format("frame {}", run.frame().index));
+  }
+  return worst_of(lab, 1e-5);
+}
+
+// Of the matrix that solve_coefficients solves with, its bases scaled to unit length. 0 of one
+// basis.
+double condition(const EigenState& state, const Frame& frame) {
+  TileSums sums;
+  accumulate_tile({state.field, frame, state.variance, state.memory.active()},
+                  {0, 0, kExtent.width, kExtent.height, 0}, sums);
+  const auto energy = [&](int k) { return sums.gram[static_cast<std::size_t>(packed(k, k))]; };
+  std::vector<int> used;
+  for (int k = 0; k < state.memory.active(); ++k) {
+    if (energy(k) > 1e-10 * energy(0)) used.push_back(k);
+  }
+  const auto rank = static_cast<int>(used.size());
+  if (rank < 2) return 0.0;
+  SmallMatrix gram(rank, rank);
+  for (int a = 0; a < rank; ++a) {
+    for (int b = 0; b <= a; ++b) {
+      const int i = used[static_cast<std::size_t>(b)], j = used[static_cast<std::size_t>(a)];
+      gram(a, b) = gram(b, a) =
+          sums.gram[static_cast<std::size_t>(packed(i, j))] / std::sqrt(energy(i) * energy(j));
+    }
+    if (a > 0) gram(a, a) *= 1.0 + 1e-6;
+  }
+  const Eigen::SelfAdjointEigenSolver<SmallMatrix> solver(gram, Eigen::EigenvaluesOnly);
+  return solver.eigenvalues()[rank - 1] / solver.eigenvalues()[0];
+}
+
+// Sums are good to 1e-7 (float along a row), so coefficients to 1e-7 times the condition: at 1e4
+// to a tenth of a percent.
+StressFinding check_condition(Lab& lab) {
+  constexpr int kBases = 5;
+  StressRun run(lab, sweeping(10'000), "eigenlight", kBases);
+  EigenState state(kExtent, kBases);
+  double cosine = 0.0, rank = 0.0;
+  while (run.step()) {
+    state.take(run.denoiser());
+    lab.note(condition(state, run.frame()), fmt::format("frame {}", run.frame().index));
+    cosine = std::max(cosine, largest_cosine(state.field));
+    rank += run.report().mean_rank / 10'000;
+  }
+  StressFinding finding = worst_of(lab, 1e4);
+  finding.note = fmt::format("largest cosine {:.3f}, mean rank {:.2f}", cosine, rank);
+  return finding;
+}
+
+}  // namespace
+
+std::vector<StressCase> basis_cases() {
+  return {
+      {"bases.orthogonality",
+       "chen2012, 10,000 frames of moving light: largest |<b_i, b_j>| of unit bases", true,
+       check_orthogonality},
+      {"bases.condition", "eigenlight, 10,000 frames of moving light: condition of the Gram matrix",
+       true, check_condition}};
+}
+
+}  // namespace eigenlight

@@ -1,0 +1,52 @@
+// What a checkpoint of `eigenlight` holds, taken apart.
+#pragma once
+
+#include "reproject/basis_field.h"
+#include "reproject/surface_history.h"
+#include "temporal/denoiser.h"
+#include "temporal/light_memory.h"
+
+namespace eigenlight {
+
+/// History of the method `eigenlight`; save and load know its order (EigenDenoiser::save).
+struct EigenState {
+  EigenState(Extent extent, int bases) : surfaces(extent), memory(extent, bases) {}
+
+  /// Throws std::runtime_error if the denoiser has another extent or number of bases.
+  void take(const Denoiser& denoiser) {
+    StateWriter saved;
+    denoiser.save(saved);
+    StateReader in({saved.bytes().data(), saved.bytes().size()});
+    int bases = 0, used = 0;
+    in.value("eigenlight", version);
+    surfaces.load(in);
+    in.value("bases", bases);
+    in.value("bases in use", used);
+    EL_CHECK(bases == memory.bases(), "a history of {} bases, not {}", bases, memory.bases());
+    field = BasisField(surfaces.previous().surface.depth.extent(), used);
+    in.plane("basis values", field.data());
+    in.plane("variance", variance);
+    memory.load(in);
+  }
+
+  void give(Denoiser& denoiser) const {
+    StateWriter out;
+    out.value("eigenlight", version);
+    surfaces.save(out);
+    out.value("bases", memory.bases());
+    out.value("bases in use", field.bases());
+    out.plane("basis values", field.data());
+    out.plane("variance", variance);
+    memory.save(out);
+    StateReader in({out.bytes().data(), out.bytes().size()});
+    denoiser.load(in);
+  }
+
+  int version = 0;
+  SurfaceHistory surfaces;
+  BasisField field;
+  Plane<float> variance;
+  LightMemory memory;
+};
+
+}  // namespace eigenlight

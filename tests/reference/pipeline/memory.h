@@ -1,0 +1,71 @@
+// Twin of LightMemory that takes and gives double; slots are born and retired as it is told.
+#pragma once
+
+#include "tests/reference/pipeline/coefficients.h"
+
+namespace eigenlight::twin {
+
+class Memory {
+ public:
+  Memory(Extent extent, int bases)
+      : bases_(bases),
+        information_(static_cast<std::size_t>(
+            TileGrid(extent, kCoefficientTile, kCoefficientTile).count())) {
+    reset();
+  }
+
+  void reset() {
+    in_use_.assign(static_cast<std::size_t>(bases_), false);
+    in_use_[0] = true;
+    for (auto& r : information_) r = SmallMatrix::Zero(bases_, bases_);
+    expected_.assign(information_.size(), SmallVector::Zero(bases_));
+  }
+  [[nodiscard]] int active() const {
+    int last = 0;
+    for (int k = 0; k < bases_; ++k) last = in_use_[static_cast<std::size_t>(k)] ? k : last;
+    return last + 1;
+  }
+  [[nodiscard]] const SmallVector& expected(int tile) const {
+    return expected_[static_cast<std::size_t>(tile)];
+  }
+
+  /// R <- lambda R + c c^T with c = (1, delta_1, ...), and q = (R / R_00 + ridge)^-1 c.
+  void advance(TileVectors& coefficients, TileVectors& learning) {
+    const int rank = active();
+    for (int tile = 0; tile < static_cast<int>(information_.size()); ++tile) {
+      SmallVector c = SmallVector::Zero(bases_);
+      c[0] = 1.0;
+      for (int k = 1; k < rank; ++k) c[k] = coefficients[static_cast<std::size_t>(k)][tile];
+      SmallMatrix& r = information_[static_cast<std::size_t>(tile)];
+      r = (1.0 - 1.0 / 64.0) * r + c * c.transpose();
+      SmallMatrix m = r.topLeftCorner(rank, rank) / r(0, 0);
+      for (int k = 1; k < rank; ++k) {
+        const bool used = in_use_[static_cast<std::size_t>(k)];
+        m(k, k) += used ? 1e-3 / r(0, 0) : 1.0;
+        expected_[static_cast<std::size_t>(tile)][k] = used ? r(k, k) / r(0, 0) : 0.0;
+      }
+      const SmallVector q = m.ldlt().solve(SmallVector(c.head(rank)));
+      for (int k = 0; k < kMaxBases; ++k) {
+        learning[static_cast<std::size_t>(k)][tile] = k < rank ? q[k] : 0.0;
+      }
+    }
+  }
+
+  void born(int k) {
+    in_use_[static_cast<std::size_t>(k)] = true;
+    for (SmallMatrix& r : information_) {
+      r.row(k).setZero();
+      r.col(k).setZero();
+      r(k, k) = 8.0;
+    }
+  }
+  void retire(int k) { in_use_[static_cast<std::size_t>(k)] = false; }
+
+ private:
+  int bases_;
+  std::vector<bool> in_use_;
+  std::vector<SmallMatrix> information_;
+  std::vector<SmallVector> expected_;
+};
+
+}  // namespace eigenlight::twin
