@@ -55,7 +55,10 @@ void PredictTile(const BasisField& bases, const CoefficientField& coefficients,
       residual[i] = confirmed ? r : 0.0f;
       known[i] = confirmed ? 1.0f : 0.0f;
       age[i] = rows.age[i];
-      const float scaled = coefficient[0][i] * variance[i] * coefficient[0][i];
+      const float gain = coefficient[0][i];
+      const float small = gain < 0.5f ? 2.0f * gain : 1.0f;
+      const float beyond = gain > 2.0f ? 0.5f * gain : small;
+      const float scaled = beyond * variance[i] * beyond;
       variance[i] = scaled < kLargestVariance ? scaled : kLargestVariance;
     }
   }

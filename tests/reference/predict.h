@@ -28,7 +28,8 @@ inline Prediction predict(const BasisField& bases, const CoefficientField& coeff
     r[c] = light[static_cast<std::size_t>(c)](x, y) - sum;
   }
   const double gain = coefficient_at(coefficients, x, y, 0);
-  out.variance_factor = gain * gain;
+  const double beyond = gain > 2.0 ? gain / 2.0 : std::min(2.0 * gain, 1.0);
+  out.variance_factor = beyond * beyond;
   const double residual = luminance(r[0], r[1], r[2]);
   out.confirmed = bases.age(x, y) > 0.0f && std::isfinite(residual);
   out.residual = out.confirmed ? residual : 0.0;

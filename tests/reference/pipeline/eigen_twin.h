@@ -135,7 +135,8 @@ class EigenTwin {
       r_.confirmed(x, y) = confirmed ? 1.0 : 0.0;
       r_.value(x, y) = confirmed ? 0.2126 * off[0] + 0.7152 * off[1] + 0.0722 * off[2] : 0.0;
       const double gain = coefficients_[0].at(x, y);
-      r_.variance(x, y) = std::min(gain * gain * r_.variance(x, y), 1e36);
+      const double beyond = gain > 2.0 ? gain / 2.0 : std::min(2.0 * gain, 1.0);
+      r_.variance(x, y) = std::min(beyond * beyond * r_.variance(x, y), 1e36);
     });
   }
 
