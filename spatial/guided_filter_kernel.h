@@ -34,30 +34,17 @@ inline constexpr int kBlockPixels = kGuidedBlock * kGuidedBlock;
   return (n + kGuidedBlock - 1) / kGuidedBlock * kGuidedBlock;
 }
 
-/// Sums of 8, 16 and 32 rows that begin at multiples of these are kept, so that wide windows are
-/// made of few: rows of a ring come in multiples of the last.
-inline constexpr int kSumLevels = 2;
-inline constexpr int kLongestSum = kGuidedBlock << (kSumLevels - 1);
-
 /// Position in the ring of row or column `y`, any integer.
 [[nodiscard]] constexpr int ring_slot(int y, int slots) { return (y % slots + slots) % slots; }
-/// Position among the sums in a ring of the one of (8 << level) rows from y on.
-[[nodiscard]] constexpr int ring_sum(int y, int level, int slots) {
-  int first = 0;
-  for (int below = 0; below < level; ++below) first += slots / (kGuidedBlock << below);
-  return first + ring_slot(y, slots) / (kGuidedBlock << level);
-}
-/// How many these are, of all levels.
-[[nodiscard]] constexpr int ring_sums(int slots) { return ring_sum(0, kSumLevels, slots); }
 
-/// How far apart rows of a ring lie, and sums of rows.
+/// How far apart rows of a ring lie, and sums of its blocks of eight.
 struct GuidedRing {
   int slots;
   std::size_t row, sum;
 };
 /// Where the summands of eight windows of span + 1 rows lie in a ring of rows: window g is of the
 /// rows from base - span + g to base + g. All have the rows [base - span + 8, base) in common, of
-/// which as many as possible are summed up already.
+/// which as many as possible are summed up already, by blocks from a multiple of eight on.
 struct GuidedWindow {
   /// Sums of rows before `first` are left out: there are none.
   GuidedWindow(int base, int span, const GuidedRing& ring, int first);
@@ -94,21 +81,20 @@ struct GuidedScratch {
   int blocks;      ///< of columns, those left of the run among them
 
   GuidedRow row;
-  Plane<float> values;  ///< row block * slots + slot: 8 columns of each value
-  Plane<float>
-      value_sums;        ///< row block * ring_sums() + ring_sum(): 8 columns of each sum over rows
-  Plane<float> surface;  ///< row slot: 1 where there is surface
+  Plane<float> values;      ///< row block * slots + slot: 8 columns of each value
+  Plane<float> value_sums;  ///< row (block * slots + slot) / 8: 8 columns of each sum over 8 rows
+  Plane<float> surface;     ///< row slot: 1 where there is surface
 
   Plane<float> columns;      ///< row sum: slots columns of 8 rows, summed over rows
-  Plane<float> column_sums;  ///< row sum: ring_sums() of these over columns
+  Plane<float> column_sums;  ///< row sum: those over 8 columns
   Plane<float> window;       ///< row sum: 8 columns of 8 rows, of windows
   Plane<float> centers;      ///< 8 columns of 8 rows: `surface` at the centers of these
 
   Plane<float> fits;      ///< row fit: slots columns of 8 rows
-  Plane<float> fit_sums;  ///< row fit: ring_sums() of these over columns
+  Plane<float> fit_sums;  ///< row fit: over 8 columns
 
   Plane<float> fit_rows;  ///< row block * slots + slot: 8 columns of each fit, summed over columns
-  Plane<float> fit_row_sums;  ///< row block * ring_sums() + ring_sum(): over rows
+  Plane<float> fit_row_sums;  ///< row (block * slots + slot) / 8: over 8 rows
   Plane<float> fitted;        ///< row fit: 8 rows of 8 columns, summed over rows, too
 
   /// Windows by the block of the ring that they end in: of `values`, where `first_windows` are for

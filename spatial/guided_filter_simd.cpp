@@ -87,14 +87,18 @@ HWY_INLINE VF SumWindows(const GuidedWindow& w, const Add& add, const Whole& who
   return after;
 }
 
+struct Lengths {
+  int row, sum;  // floats
+};
+
 // Rows and sums that SumWindows() is going to read: wide windows outgrow the second-level cache.
-void Fetch(const GuidedWindow& w, const float* rows, const float* sums, const Extent& sizes) {
+void Fetch(const GuidedWindow& w, const float* rows, const float* sums, const Lengths& lengths) {
   constexpr int kLine = 16;
   for (std::size_t g = 0; g < kGuidedBlock; ++g) {
-    for (int x = 0; x < sizes.width; x += kLine) hwy::Prefetch(rows + w.at[g] + x);
+    for (int x = 0; x < lengths.row; x += kLine) hwy::Prefetch(rows + w.at[g] + x);
   }
   for (int i = 0; i < w.sum_count; ++i) {
-    for (int x = 0; x < sizes.height; x += kLine) {
+    for (int x = 0; x < lengths.sum; x += kLine) {
       hwy::Prefetch(sums + w.sums[static_cast<std::size_t>(i)] + x);
     }
   }
@@ -144,8 +148,8 @@ class Filter {
         SumBlock(block, y);
       } else {
         if (block + 1 < blocks_) {
-          Fetch(RowWindow(y), s_.values.row((block + 1) * s_.slots), Sums(block + 1, s_.value_sums),
-                {s_.values.width(), s_.value_sums.width()});
+          Fetch(RowWindow(y), s_.values.row((block + 1) * s_.slots),
+                Sums(block + 1, 0, s_.value_sums), {s_.values.width(), s_.value_sums.width()});
         }
         SumColumns(block, y);
         if (block >= ahead_) FitWindows(block, y);
@@ -153,8 +157,8 @@ class Filter {
       const int done = block - 2 * ahead_;
       if (done < 0 || y < run_.y0) continue;
       if (block + 1 < blocks_) {
-        Fetch(Window(s_.fit_row_windows, y), FitRow(done + 1, 0), Sums(done + 1, s_.fit_row_sums),
-              {s_.fit_rows.width(), s_.fit_row_sums.width()});
+        Fetch(Window(s_.fit_row_windows, y), FitRow(done + 1, 0),
+              Sums(done + 1, 0, s_.fit_row_sums), {s_.fit_rows.width(), s_.fit_row_sums.width()});
       }
       if (fits) {
         SumFitsAlong(block - ahead_, y);
@@ -211,48 +215,14 @@ class Filter {
                        : Window(s_.value_windows, y);
   }
 
-  float* Sums(int block, Plane<float>& sums) const { return sums.row(block * ring_sums(s_.slots)); }
   // Of rows y to y + 7.
-  float* SumsOf(int block, int y, Plane<float>& sums) const {
-    return sums.row(block * ring_sums(s_.slots) + ring_sum(y, 0, s_.slots));
-  }
-
-  // Sums of more rows that are complete with that of rows y to y + 7: positions of two halves, and
-  // of their sum.
-  struct Doubling {
-    int count = 0;
-    std::array<std::array<std::size_t, 3>, kSumLevels - 1> at{};
-  };
-  Doubling DoublingAt(int y, std::size_t stride) const {
-    Doubling doubling;
-    const auto at = [&](int begin, int level) {
-      return stride * static_cast<std::size_t>(ring_sum(begin, level, s_.slots));
-    };
-    const int end = y + kGuidedBlock;
-    for (int level = 1; level < kSumLevels; ++level) {
-      const int rows = kGuidedBlock << level;
-      if (ring_slot(end, rows) != 0) break;
-      doubling.at[static_cast<std::size_t>(doubling.count++)] = {
-          at(end - rows, level - 1), at(end - rows / 2, level - 1), at(end - rows, level)};
-    }
-    return doubling;
-  }
-  static void Double(const Doubling& doubling, int count, float* sums) {
-    const F d;
-    for (int i = 0; i < doubling.count; ++i) {
-      const auto& [a, b, to] = doubling.at[static_cast<std::size_t>(i)];
-      for (int x = 0; x < count; x += Lanes()) {
-        hn::Store(hn::Add(hn::Load(d, sums + a + x), hn::Load(d, sums + b + x)), d, sums + to + x);
-      }
-    }
-  }
-  void DoubleRows(int block, int y, Plane<float>& sums) const {
-    Double(DoublingAt(y, sums.stride()), sums.width(), Sums(block, sums));
+  float* Sums(int block, int y, Plane<float>& sums) const {
+    return sums.row((block * s_.slots + ring_slot(y, s_.slots)) / kGuidedBlock);
   }
 
   // Rows y to y + 7 of a block, each sum over all of them: what windows have of them later.
   void SumBlock(int block, int y) {
-    float* sums = SumsOf(block, y, s_.value_sums);
+    float* sums = Sums(block, y, s_.value_sums);
     const auto row = s_.values.stride() * static_cast<std::size_t>(ring_slot(y, s_.slots));
     for (int x = 0; x < kGuidedBlock; x += Lanes()) {
       ForSums(s_.values.row(block * s_.slots) + x, [&](int sum, const auto& add) {
@@ -263,17 +233,16 @@ class Filter {
         hn::Store(all, F(), sums + kGuidedBlock * sum + x);
       });
     }
-    DoubleRows(block, y, s_.value_sums);
   }
 
   // Sums down windows that end in rows y to y + 7, into the ring of columns.
   void SumColumns(int block, int y) {
     const F d;
     const GuidedWindow& window = RowWindow(y);
-    float* here = SumsOf(block, y, s_.value_sums);
+    float* here = Sums(block, y, s_.value_sums);
     const int column = ring_slot(kGuidedBlock * block, s_.slots);
     for (int x = 0; x < kGuidedBlock; x += Lanes()) {
-      const float* sums = Sums(block, s_.value_sums) + x;
+      const float* sums = Sums(block, 0, s_.value_sums) + x;
       ForSums(s_.values.row(block * s_.slots) + x, [&](int sum, const auto& add) {
         const auto whole = [&](std::size_t at) {
           return hn::Load(d, sums + at + kGuidedBlock * sum);
@@ -283,15 +252,13 @@ class Filter {
         StoreTransposed(down, kGuidedBlock, s_.columns.row(sum) + kGuidedBlock * (column + x));
       });
     }
-    DoubleRows(block, y, s_.value_sums);
     SumEights(kGuidedBlock * block, s_.columns, s_.column_sums);
   }
 
-  // Sums of eight columns of each quantity, and of more.
+  // Sums of eight columns of each quantity.
   void SumEights(int column, const Plane<float>& columns, Plane<float>& sums) const {
     const F d;
-    const int slot = ring_slot(column, s_.slots), sum = ring_sum(column, 0, s_.slots);
-    const Doubling doubling = DoublingAt(column, kGuidedBlock);
+    const int slot = ring_slot(column, s_.slots);
     for (int quantity = 0; quantity < columns.height(); ++quantity) {
       const float* from = columns.row(quantity) + kGuidedBlock * slot;
       for (int row = 0; row < kGuidedBlock; row += Lanes()) {
@@ -299,9 +266,8 @@ class Filter {
         for (int i = 1; i < kGuidedBlock; ++i) {
           all = hn::Add(all, hn::Load(d, from + kGuidedBlock * i + row));
         }
-        hn::Store(all, d, sums.row(quantity) + kGuidedBlock * sum + row);
+        hn::Store(all, d, sums.row(quantity) + slot + row);
       }
-      Double(doubling, kGuidedBlock, sums.row(quantity));
     }
   }
 
@@ -358,15 +324,10 @@ class Filter {
       SumAlong(window, s_.fits.row(fit), s_.fit_sums.row(fit),
                [&](int row, const VF(&along)[kGuidedBlock]) {
                  const std::size_t stride = s_.fit_rows.stride();
-                 StoreTransposedRows(along, row, stride, to + kGuidedBlock * fit);
+                 StoreTransposed(along, stride,
+                                 to + stride * static_cast<std::size_t>(row) + kGuidedBlock * fit);
                });
     }
-  }
-
-  // Columns of some rows to those rows.
-  static void StoreTransposedRows(const VF (&columns)[kGuidedBlock], int row, std::size_t stride,
-                                  float* to) {
-    StoreTransposed(columns, stride, to + stride * static_cast<std::size_t>(row));
   }
 
   void ClearFits(int block, int y) {
@@ -379,12 +340,12 @@ class Filter {
   void SumFits(int block, int y) {
     const F d;
     const GuidedWindow& window = Window(s_.fit_row_windows, y);
-    float* here = SumsOf(block, y, s_.fit_row_sums);
+    float* here = Sums(block, y, s_.fit_row_sums);
     for (int fit = 0; fit < s_.fits.height(); ++fit) {
       for (int x = 0; x < kGuidedBlock; x += Lanes()) {
         const int offset = kGuidedBlock * fit + x;
         const float* rows = FitRow(block, 0) + offset;
-        const float* sums = Sums(block, s_.fit_row_sums) + offset;
+        const float* sums = Sums(block, 0, s_.fit_row_sums) + offset;
         const auto add = [=](VF sum, std::size_t at) {
           return hn::Add(sum, hn::Load(d, rows + at));
         };
@@ -396,7 +357,6 @@ class Filter {
         }
       }
     }
-    DoubleRows(block, y, s_.fit_row_sums);
   }
 
   const GuidedWork& work_;

@@ -8,39 +8,35 @@ GuidedWindow::GuidedWindow(int base, int span_, const GuidedRing& ring, int firs
     at[static_cast<std::size_t>(i)] = ring.row * slot(base - span + i);
   }
   for (int y = base - span + kGuidedBlock; y < base;) {
-    int level = kSumLevels - 1;
-    const auto fits = [&](int rows) { return ring_slot(y, rows) == 0 && y + rows <= base; };
-    while (level >= 0 && !fits(kGuidedBlock << level)) --level;
-    if (level < 0) {
+    if (ring_slot(y, kGuidedBlock) != 0 || y + kGuidedBlock > base) {
       rest[static_cast<std::size_t>(rest_count++)] = ring.row * slot(y);
       ++y;
       continue;
     }
     if (y >= first) {
-      sums[static_cast<std::size_t>(sum_count++)] =
-          ring.sum * static_cast<std::size_t>(ring_sum(y, level, ring.slots));
+      sums[static_cast<std::size_t>(sum_count++)] = ring.sum * (slot(y) / kGuidedBlock);
     }
-    y += kGuidedBlock << level;
+    y += kGuidedBlock;
   }
 }
 
 GuidedScratch::GuidedScratch(int radius, int guide_count)
     : span(2 * radius),
       lead(round_up_to_blocks(span)),
-      slots((lead + kLongestSum) / kLongestSum * kLongestSum),
+      slots(lead + kGuidedBlock),
       blocks((guided_strip(radius) + 2 * lead) / kGuidedBlock),
       row(kGuidedBlock * blocks),
       values({kGuidedBlock * guided_values(guide_count), blocks * slots}),
-      value_sums({kGuidedBlock * guided_sums(guide_count), blocks * ring_sums(slots)}),
+      value_sums({kGuidedBlock * guided_sums(guide_count), blocks * slots / kGuidedBlock}),
       surface({kGuidedBlock * blocks, slots}),
       columns({kGuidedBlock * slots, guided_sums(guide_count)}),
-      column_sums({kGuidedBlock * ring_sums(slots), guided_sums(guide_count)}),
+      column_sums({slots, guided_sums(guide_count)}),
       window({kBlockPixels, guided_sums(guide_count)}),
       centers({kBlockPixels, 1}),
       fits({kGuidedBlock * slots, guided_fits(guide_count)}),
-      fit_sums({kGuidedBlock * ring_sums(slots), guided_fits(guide_count)}),
+      fit_sums({slots, guided_fits(guide_count)}),
       fit_rows({kGuidedBlock * guided_fits(guide_count), blocks * slots}),
-      fit_row_sums({kGuidedBlock * guided_fits(guide_count), blocks * ring_sums(slots)}),
+      fit_row_sums({kGuidedBlock * guided_fits(guide_count), blocks * slots / kGuidedBlock}),
       fitted({kBlockPixels, guided_fits(guide_count)}) {
   const GuidedRing of_values{slots, values.stride(), value_sums.stride()};
   const GuidedRing of_columns{slots, kGuidedBlock, kGuidedBlock};

@@ -223,8 +223,8 @@ void EigenDenoiser::report_rank() {
   report_.mean_rank = tiles > 0.0 ? rank / tiles : 0.0;
 }
 
-// Where light changes in ways that no basis knows, memory ends sooner: the longest age of a tile lies
-// between the two by the share that each has in the weight of a frame.
+// Where light changes in ways that no basis knows, memory ends sooner: the longest age of a tile
+// lies between the two by the share that each has in the weight of a frame.
 void EigenDenoiser::shorten_memory(const Tile& tile) {
   const float change = options_.correct ? correction_.change(tile.index) : 0.0f;
   const float most = options_.innovation.max_age, least = std::min(options_.changing, most);

@@ -13,7 +13,8 @@ using testing::HasSubstr;
 using testing::ThrowsMessage;
 
 TEST(AntialiasOptions, TextAndOptionsAreTheSame) {
-  for (const char* text : {"none", "lookup", "sraa", "sraa-geometry", "supersample:2", "supersample:1024"}) {
+  for (const char* text :
+       {"none", "lookup", "sraa", "sraa-geometry", "supersample:2", "supersample:1024"}) {
     EXPECT_EQ(format_antialias(parse_antialias(text)), text);
   }
   EXPECT_EQ(parse_antialias("supersample:16").samples, 16);
