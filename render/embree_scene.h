@@ -20,7 +20,7 @@ struct Ray {
   float t_min = 0.0f;
   float t_max = std::numeric_limits<float>::infinity();
   /// May slip between two triangles that share an edge, which a ray in a random direction does less
-  /// than once in a million; in return it takes two thirds of the time. Not for rays that are aimed
+  /// than once in 100,000; in return it takes two thirds of the time. Not for rays that are aimed
   /// at places which may lie on edges, pixel centers among them.
   bool quick = false;
 };

@@ -57,7 +57,7 @@ void add_run_options(CLI::App& command, RenderSettings& settings) {
   command.add_option("--bases", settings.bases, "Bases per pixel, 1 to 8")->capture_default_str();
   command
       .add_option("--aa", settings.antialias,
-                  "Antialiasing of the layer color: none, lookup, sraa, supersample:N")
+                  "Antialiasing of the layer color: none, lookup, sraa, sraa-geometry, supersample:N")
       ->capture_default_str();
   command.add_option("--layers", settings.layers,
                      "Layers to write, with commas [all]: " + format_layers(parse_layers("")));

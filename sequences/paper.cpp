@@ -84,6 +84,8 @@ std::string_view to_text(Verdict verdict) {
 const std::vector<Paper>& papers() {
   static const std::vector<Paper> kPapers{
       chen2012(),
+      bauszat2011(),
+      chiu2012(),
       xu2024(),
   };
   return kPapers;

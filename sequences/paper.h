@@ -42,6 +42,7 @@ struct Paper {
   std::string_view title;     ///< authors, year, title
   std::string_view hardware;  ///< that the paper's figures are of
   PaperReport (*rerun)(const PaperRun&);
+  std::string_view size = "128x72";  ///< of PaperRun unless a user says otherwise: a minute or two
 };
 
 [[nodiscard]] const std::vector<Paper>& papers();

@@ -173,6 +173,7 @@ PaperReport rerun_chen2012(const PaperRun& run) {
   PaperReport report;
   chen_stage_times(run, report);
   chen_rendering_times(run, report);
+  chen_disocclusion(run, report);
   chen_flicker(run, report);
   chen_error(run, report);
   chen_bases(run, report);

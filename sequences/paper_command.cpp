@@ -17,17 +17,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Small, so that a paper takes a minute or two on two cores; 24 frames are a second.
-constexpr const char* kSize = "128x72";
+// A second.
 constexpr const char* kFrames = "0-23";
 // Figures are means over the last frames, and need some before them.
 constexpr std::size_t kLeastFrames = 8;
 
 struct Interrupted {};
 
-PaperRun make_run(const CompareSettings& settings) {
+PaperRun make_run(const Paper& paper, const CompareSettings& settings) {
   PaperRun run;
-  run.extent = parse_size(settings.size.empty() ? kSize : settings.size);
+  run.extent = parse_size(settings.size.empty() ? std::string(paper.size) : settings.size);
   const std::string frames = settings.frames.empty() ? kFrames : settings.frames;
   run.frames = parse_frame_range(frames);
   const bool is_run =
@@ -52,7 +51,7 @@ fs::path make_directory(const std::string& name) {
 
 int paper_command(const CompareSettings& settings, const Console& console) {
   const Paper& paper = find_paper(settings.paper);
-  PaperRun run = make_run(settings);
+  PaperRun run = make_run(paper, settings);
   const fs::path directory = make_directory(settings.directory);
   const InterruptGuard interrupt(settings.quiet ? InterruptGuard::Notice::kSilent
                                                 : InterruptGuard::Notice::kStderr);

@@ -32,11 +32,13 @@ PaperScene::PaperScene(std::string_view name, Perturbation perturbation, Extent 
 
 PaperScene::~PaperScene() = default;
 
+LiveSource PaperScene::source(RenderOptions options, const std::vector<int>& frames) const {
+  options.extent = extent_;
+  return {scene_, rest_ ? *rest_ : *flight_, options, frames};
+}
+
 LiveSource PaperScene::source(int spp, const std::vector<int>& frames, std::uint32_t seed) const {
-  return {scene_,
-          rest_ ? *rest_ : *flight_,
-          {.extent = extent_, .spp = spp, .direct_spp = 1, .seed = seed},
-          frames};
+  return source({.spp = spp, .direct_spp = 1, .seed = seed}, frames);
 }
 
 std::vector<Frame> PaperScene::render(int spp, const std::vector<int>& frames,

@@ -28,6 +28,8 @@ class PaperScene {
   /// One direct sample a pixel, which no filter reads, and 3 bounces.
   [[nodiscard]] std::vector<Frame> render(int spp, const std::vector<int>& frames,
                                           std::uint32_t seed = 0) const;
+  /// A source of frames that are rendered in another way; options.extent is the scene's.
+  [[nodiscard]] LiveSource source(RenderOptions options, const std::vector<int>& frames) const;
   /// A source of the same frames.
   [[nodiscard]] LiveSource source(int spp, const std::vector<int>& frames,
                                   std::uint32_t seed = 0) const;

@@ -44,6 +44,7 @@ Correction::Correction(Extent extent, const CorrectionOptions& options)
       blocks_(static_cast<std::size_t>(gate_.grid().count())),
       open_(blocks_.size()),
       was_open_(blocks_.size()),
+      change_(blocks_.size()),
       wanted_(static_cast<std::size_t>(grid_.count())),
       loaded_(wanted_.size()),
       corrected_(wanted_.size()) {
@@ -95,8 +96,9 @@ bool Correction::open_gates() {
     });
     // One block alone is no region: in a small image chance would open the gate with it.
     const double share = all > 0.0 ? (significant - 1.0) / all : 0.0;
-    const double gate =
-        options_.gated ? std::clamp((share - kGateStart) / kGateRange, 0.0, 1.0) : 1.0;
+    const double change = std::clamp((share - kGateStart) / kGateRange, 0.0, 1.0);
+    change_[static_cast<std::size_t>(index)] = static_cast<float>(change);
+    const double gate = options_.gated ? change : 1.0;
     gate_.tile(index)[0] = static_cast<float>(gate - 1.0);
     if (gate > 0.0) for_each_neighbor(grid, index, [&](std::size_t tile) { open_[tile] = 1; });
   }

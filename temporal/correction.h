@@ -10,7 +10,7 @@ namespace eigenlight {
 
 struct CorrectionOptions {
   /// [0, 1000] variances of the smoothed residual that count as chance.
-  float significance = 6.0f;
+  float significance = 10.0f;
   int passes = 4;     ///< [1, 6] of the a-trous filter over cells that smooths the residual
   bool gated = true;  ///< filter only where light changes; else everywhere
 
@@ -39,6 +39,9 @@ class Correction {
   [[nodiscard]] const Planes<3>& correction() const { return correction_; }
   /// Whether the last frame added anything in a tile of the coefficients' grid.
   [[nodiscard]] bool is_open(int tile) const { return open_[static_cast<std::size_t>(tile)] != 0; }
+  /// g of a tile of the coefficients' grid in the last frame, [0, 1], whether filtering is gated or
+  /// not: how surely its light changed in a way no basis knows.
+  [[nodiscard]] float change(int tile) const { return change_[static_cast<std::size_t>(tile)]; }
   /// Pixels of the last frame in tiles that were not open: nothing was filtered there.
   [[nodiscard]] std::int64_t skipped() const { return skipped_; }
 
@@ -58,6 +61,7 @@ class Correction {
   Plane<float> factor_;                        // f of each cell
   std::vector<BlockCounts> blocks_;            // per coefficient tile
   std::vector<std::uint8_t> open_, was_open_;  // per coefficient tile
+  std::vector<float> change_;                  // g per coefficient tile
   std::vector<std::uint8_t> wanted_, loaded_;  // per tile of cells
   std::vector<std::int64_t> corrected_;        // confirmed pixels per tile of cells
   std::int64_t skipped_ = 0;

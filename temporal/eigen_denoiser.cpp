@@ -30,6 +30,8 @@ void EigenOptions::validate() const {
   atrous.validate();
   EL_CHECK(birth >= 0.0 && birth <= 1.0, "birth {}: expected [0, 1]", birth);
   EL_CHECK(young >= 0.0f && young <= 255.0f, "young {}: expected [0, 255] frames", young);
+  EL_CHECK(changing >= 1.0f && changing <= 255.0f, "changing {}: expected [1, 255] frames",
+           changing);
   EL_CHECK(quiet >= 0.0f && quiet <= 1.0f, "quiet {}: expected [0, 1]", quiet);
 }
 
@@ -221,6 +223,23 @@ void EigenDenoiser::report_rank() {
   report_.mean_rank = tiles > 0.0 ? rank / tiles : 0.0;
 }
 
+// Where light changes in ways that no basis knows, memory ends sooner: the longest age of a tile lies
+// between the two by the share that each has in the weight of a frame.
+void EigenDenoiser::shorten_memory(const Tile& tile) {
+  const float change = options_.correct ? correction_.change(tile.index) : 0.0f;
+  const float most = options_.innovation.max_age, least = std::min(options_.changing, most);
+  if (!(change > 0.0f) || least == most) return;
+  const float longest = 1.0f / ((1.0f - change) / most + change / least);
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    float* age = new_age_.at(tile.x0, y);
+    const float* samples = samples_.at(tile.x0, y);
+    for (int i = 0; i < tile.x1 - tile.x0; ++i) {
+      // An age below the frame's own samples would weigh them more than once.
+      age[i] = std::min(age[i], std::max(longest, samples[i]));
+    }
+  }
+}
+
 void EigenDenoiser::update() {
   bases_.reshape(std::max(memory_.active(), newborn_ + 1));
   for_each_strip(tiles_, [&](const Strip& strip) {
@@ -232,6 +251,7 @@ void EigenDenoiser::update() {
       } else {
         fresh_variance({frame_, samples_, old_age_, fireflies_.brightness()}, tiles_.tile(i),
                        variance_);
+        shorten_memory(tiles_.tile(i));
       }
     }
     for_each_segment(tiles_, strip, [&](const Tile& row) {

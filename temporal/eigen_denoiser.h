@@ -28,6 +28,9 @@ struct EigenOptions {
   AtrousOptions atrous{.passes = 4, .radius = 1, .luminance_sigmas = 5.0f};
   /// [0, 255] frames: younger pixels take the guided filter's value the more, the younger they are.
   float young = 2.0f;
+  /// [1, 255] frames: the longest age where light changes in ways that no basis knows. A filter
+  /// takes noise from the estimate later, but not what an old light left in it.
+  float changing = 12.0f;
   /// [0, 1] of the squared luminance: a tile whose variances all lie below it is not filtered.
   float quiet = 1e-5f;
   /// [0, 1] of the pixels that must need correction before another basis is born.
@@ -70,6 +73,7 @@ class EigenDenoiser final : public Denoiser {
   void predict(bool resampled);
   void report_rank();
   void retire_bases();
+  void shorten_memory(const Tile& tile);
   void update();
   void update_row(const Tile& row);
   void clear_tile(const Tile& tile);

@@ -11,8 +11,9 @@
 namespace eigenlight {
 namespace {
 
-constexpr std::array<std::string_view, 4> kNames{"none", "lookup", "sraa", "supersample"};
-constexpr std::string_view kSupersample = kNames[3];
+constexpr std::array<std::string_view, 5> kNames{"none", "lookup", "sraa", "sraa-geometry",
+                                                 "supersample"};
+constexpr std::string_view kSupersample = kNames.back();
 
 int parse_samples(std::string_view text, std::string_view whole) {
   int samples = 0;

@@ -40,7 +40,9 @@ class PixelRays {
 
   [[nodiscard]] glm::vec3 color(const AntialiasOptions& options) {
     if (options.mode == AntialiasMode::kLookup) return looked_up();
-    if (options.mode == AntialiasMode::kSraa) return reconstructed();
+    if (options.mode == AntialiasMode::kSraa || options.mode == AntialiasMode::kSraaGeometry) {
+      return reconstructed(options.mode);
+    }
     return supersampled(options.samples);
   }
 
@@ -70,7 +72,7 @@ class PixelRays {
   [[nodiscard]] glm::vec3 direct(const EyeRay& ray, int samples);
   [[nodiscard]] glm::vec3 indirect(const EyeRay& ray);
   [[nodiscard]] glm::vec3 looked_up();
-  [[nodiscard]] glm::vec3 reconstructed();
+  [[nodiscard]] glm::vec3 reconstructed(AntialiasMode mode);
   [[nodiscard]] glm::vec3 supersampled(int samples);
   // `light_at(ray)` where the guide ray and those of the rotated grid meet surfaces.
   template <typename LightAt>
@@ -126,9 +128,11 @@ glm::vec3 PixelRays::looked_up() {
   });
 }
 
-glm::vec3 PixelRays::reconstructed() {
+glm::vec3 PixelRays::reconstructed(AntialiasMode mode) {
   return mean_of_grid([&](const EyeRay& ray) {
-    const std::uint8_t lit = in_.tracer.lit_by(ray.hit.guide.point, tally_.counters.rays);
+    const std::uint8_t lit = mode == AntialiasMode::kSraa
+                                 ? in_.tracer.lit_by(ray.hit.guide.point, tally_.counters.rays)
+                                 : std::uint8_t{0};
     const auto light =
         reconstruct_light(in_.guides, lit_, {ray.pixel, ray.hit.depth, ray.hit.normal}, lit);
     if (light) return *light;
@@ -186,11 +190,8 @@ PictureStats render_picture(const AntialiasOptions& options, const PictureInputs
   ensure_extent(out, extent);
   const TileGrid grid(extent, kTileSide, kTileSide);
   PictureStats stats;
-  Plane<std::uint8_t> lit;
-  if (options.mode == AntialiasMode::kSraa) {
-    lit = Plane<std::uint8_t>(extent);
-    stats.rays += judge_shadows(in, grid, lit);
-  }
+  Plane<std::uint8_t> lit(extent);
+  if (options.mode == AntialiasMode::kSraa) stats.rays += judge_shadows(in, grid, lit);
   std::vector<Tally> tallies(static_cast<std::size_t>(grid.count()));
   for_each_tile(grid, [&](const Tile& tile) {
     Tally& tally = tallies[static_cast<std::size_t>(tile.index)];

@@ -31,6 +31,7 @@ struct PictureInputs {
 ///                 with a quarter of direct_spp at the grid's; indirect light is that of
 ///                 most_similar_guide()
 ///   kSraa         the same rays; light is that of reconstruct_light()
+///   kSraaGeometry the same without shadow rays: light from both sides of a shadow's edge
 ///   kSupersample  `samples` jittered rays, without the guide ray; spp and direct_spp at each, so
 ///                 that the filtered indirect light takes no part
 /// Where the lookup or reconstruction finds nothing, that part of the light is path-traced there

@@ -14,8 +14,9 @@ constexpr std::uint32_t kStateVersion = 1;
 
 }  // namespace
 
-Chen2012::Chen2012(const DenoiserOptions& options)
-    : history_(options.extent, options.bases),
+Chen2012::Chen2012(const DenoiserOptions& options, const ChenOptions& parts)
+    : options_(parts),
+      history_(options.extent, options.bases),
       pca_(options.extent, options.bases),
       filter_(options.extent),
       counts_(static_cast<std::size_t>(stage_tiles(options.extent).count())),
@@ -37,8 +38,7 @@ const Planes<3>* Chen2012::step(FrameSource& source) {
   const BasisHistory::Warp warp = history_.warp(frame_);
   report_.cut = warp.cut;
   report_.skipped_warp = warp.skipped;
-  // Beyond the number of bases n says nothing new, and runs have no end.
-  number_ = warp.cut ? 1 : std::min(number_ + 1, kMaxBases + 1);
+  number_ = warp.cut ? 1 : std::min(number_ + 1, static_cast<int>(kMostFrames));
   report_[Stage::kReproject] = clock.lap();
   resample(source);
   report_[Stage::kResample] = clock.lap();
@@ -49,7 +49,7 @@ const Planes<3>* Chen2012::step(FrameSource& source) {
   if (!warp.cut) pca_.orthogonalize(bases);
   pca_.update(pca_frame, bases);
   report_[Stage::kUpdate] = clock.lap();
-  filter_.process(frame_, smooth_, bases);
+  if (options_.basis_filter) filter_.process(frame_, smooth_, bases);
   report_[Stage::kFilter] = clock.lap();
   report_.mean_rank = pca_.reconstruct(pca_frame, bases, output_);
   history_.keep(frame_);
@@ -118,7 +118,8 @@ void Chen2012::weigh(const Tile& tile) {
       const bool usable = age_(x, y) > 0.0f;
       const bool fresh = extra_(x, y) > 0;
       const float age = usable ? std::min(old_age_(x, y) + 1.0f, kMostFrames) : old_age_(x, y);
-      weight_(x, y) = usable ? std::min(1.0f, (1.0f + kAmnesia) / age) : 0.0f;
+      const float n = options_.per_pixel_weights ? age : static_cast<float>(number_);
+      weight_(x, y) = usable ? std::min(1.0f, (1.0f + kAmnesia) / n) : 0.0f;
       smooth_(x, y) = fresh && !(report_.cut && usable) ? 1 : 0;
       age_(x, y) = history_.bases().age(x, y) = age;
     }
@@ -139,7 +140,7 @@ void Chen2012::load(StateReader& in) {
         fmt::format("state of 'chen2012': version {}, expected {}", version, kStateVersion));
   }
   in.value("number", number_);
-  number_ = std::clamp(number_, 0, kMaxBases + 1);
+  number_ = std::clamp(number_, 0, static_cast<int>(kMostFrames));
   history_.load(in);
 }
 

@@ -8,6 +8,12 @@
 
 namespace eigenlight {
 
+/// What Chen 2012 compares its choices with.
+struct ChenOptions {
+  bool per_pixel_weights = true;  ///< else n of step 4 is that of the frames since the last cut
+  bool basis_filter = true;       ///< step 5
+};
+
 /// Chen, Lei and Chang 2012, for comparison. Per frame:
 ///   1. bases and ages are carried over by reverse reprojection (section 3.4);
 ///   2. newly seen pixels get 120 more samples each (Fig. 6d), but none at a cut, where all are
@@ -28,7 +34,7 @@ class Chen2012 final : public Denoiser {
   static constexpr float kMostFrames = 255.0f;  ///< the paper has no limit
   static constexpr int kExtraSamples = 120;     ///< Fig. 6d
 
-  explicit Chen2012(const DenoiserOptions& options);
+  explicit Chen2012(const DenoiserOptions& options, const ChenOptions& parts = {});
 
   [[nodiscard]] const Planes<3>* step(FrameSource& source) override;
   [[nodiscard]] const Frame& frame() const override { return frame_; }
@@ -48,10 +54,11 @@ class Chen2012 final : public Denoiser {
   void merge_samples(const Tile& tile, bool resampled);
   void weigh(const Tile& tile);
 
+  ChenOptions options_;
   Frame frame_;
   FrameReport report_;
   BasisHistory history_;
-  int number_ = 0;  // frames since the last cut
+  int number_ = 0;  // frames since the last cut, saturated as ages are
 
   ImagePca pca_;
   NewPixelFilter filter_;

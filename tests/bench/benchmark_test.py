@@ -29,6 +29,22 @@ class FolderTest(unittest.TestCase):
         self.folder = pathlib.Path(folder.name)
 
 
+class PapersTest(FolderTest):
+    def test_claims_become_a_table_for_each_paper(self):
+        claim = {"where": "Fig. 1", "claim": "fast", "paper": "1 ms", "ours": "2 ms", "verdict": "not"}
+        for name in ("b2012", "a2011"):
+            (self.folder / f"paper-{name}.json").write_text(json.dumps(
+                {"paper": name, "title": f"Title of {name}", "paper_hardware": "a GPU",
+                 "size": [8, 4], "frames": "0-7", "claims": [claim]}))
+        text = report.sections(self.folder, self.folder)["papers"]
+        self.assertIn("Title of a2011 (theirs: a GPU; here, where the paper gives no size, 8x4", text)
+        self.assertIn("| --- | --- | --- | --- | --- |\n| Fig. 1 | fast | 1 ms | 2 ms | not |", text)
+        self.assertLess(text.index("a2011"), text.index("b2012"))
+
+    def test_without_reruns_there_is_no_section(self):
+        self.assertNotIn("papers", report.sections(self.folder, self.folder))
+
+
 class RunnerTest(FolderTest):
     def step(self, name, text="x", program=None):
         """Adds `text` to a file each time that it runs."""

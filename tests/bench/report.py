@@ -173,6 +173,20 @@ def render(path):
     return table.markdown(head, rows)
 
 
+def papers(paths):
+    """What each paper claims, what it gives here, and whether that holds."""
+    parts = []
+    for path in paths:
+        paper = load_json(path)
+        width, height = paper["size"]
+        rows = [[c["where"], c["claim"], c["paper"], c["ours"], c["verdict"]] for c in paper["claims"]]
+        parts.append(f"{paper['title']} (theirs: {paper['paper_hardware']}; here, where the paper gives no "
+                     f"size, {width}x{height}, frames {paper['frames']}):")
+        words = table.markdown([paper["paper"], "claim", "the paper", "here", ""], rows)
+        parts.append(words.replace(" ---: |", " --- |"))
+    return "\n\n".join(parts)
+
+
 def sections(directory, plots):
     """The README's sections by name, as far as there are results."""
     found = {}
@@ -191,6 +205,9 @@ def sections(directory, plots):
         found["quality"] = quality(directory / "quality", settings)
     if (directory / "compare" / "results.json").exists():
         found["compare"] = compare(directory / "compare" / "results.json", plots)
+    reruns = sorted(directory.glob("paper-*.json"))
+    if reruns:
+        found["papers"] = papers(reruns)
     return found
 
 

@@ -13,7 +13,7 @@ using testing::HasSubstr;
 using testing::ThrowsMessage;
 
 TEST(AntialiasOptions, TextAndOptionsAreTheSame) {
-  for (const char* text : {"none", "lookup", "sraa", "supersample:2", "supersample:1024"}) {
+  for (const char* text : {"none", "lookup", "sraa", "sraa-geometry", "supersample:2", "supersample:1024"}) {
     EXPECT_EQ(format_antialias(parse_antialias(text)), text);
   }
   EXPECT_EQ(parse_antialias("supersample:16").samples, 16);
@@ -25,7 +25,7 @@ TEST(AntialiasOptions, UnknownWordsListTheKnownOnes) {
   for (const char* text : {"", "fxaa", "Lookup", "lookup:4", "none:", ":", " sraa"}) {
     EXPECT_THAT([&] { (void)parse_antialias(text); },
                 ThrowsMessage<std::invalid_argument>(
-                    HasSubstr("'; known: none, lookup, sraa, supersample:N")))
+                    HasSubstr("'; known: none, lookup, sraa, sraa-geometry, supersample:N")))
         << text;
   }
 }

@@ -4,12 +4,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "sequences/cli.h"
+#include "sequences/paper_bauszat2011.h"
 #include "sequences/paper_chen2012.h"
+#include "sequences/paper_chiu2012.h"
 #include "sequences/paper_scene.h"
 #include "tests/support/temp_dir.h"
 
@@ -98,6 +102,66 @@ TEST(Paper, ChensBasesAreThoseOfBatchPca) {
   ASSERT_EQ(table.rows.size(), 4u);
   EXPECT_GT(std::get<double>(table.rows[0].cells[0]), 0.99);
   for (const TableRow& row : table.rows) EXPECT_LE(std::get<double>(row.cells[0]), 1.0 + 1e-9);
+}
+
+const PaperRun kTiny{{32, 18}, {0, 1, 2, 3, 4, 5, 6, 7}, [](const std::string&) {}};
+
+double number(const PageTable& table, std::size_t row, std::size_t column) {
+  return std::get<double>(table.rows.at(row).cells.at(column));
+}
+
+// With one basis and one weight a pixel seen after 48 frames takes in 3 / 49 of its first frame, so
+// that most of its light is missing; with weights of its own it does not.
+TEST(Paper, ChensNewPixelsAreBiasedByOneWeight) {
+  PaperReport report;
+  chen_disocclusion(kTiny, report);
+  ASSERT_EQ(report.claims.size(), 1u);
+  const auto& series = report.sections.at(0).plots.at(0).series;
+  ASSERT_EQ(series.size(), 6u);
+  EXPECT_LT(series[0].points.front().y, 0.3);
+  EXPECT_GT(series[1].points.front().y, 0.5);
+  EXPECT_LT(series[1].points.back().y, 0.5 * series[1].points.front().y);
+}
+
+// Filters of any kind take most of the noise out, and the best of the settings tried is shown.
+TEST(Paper, BauszatsFiltersAreShownAtTheirBest) {
+  PaperReport report;
+  bauszat_errors(kTiny, report);
+  ASSERT_EQ(report.claims.size(), 7u);
+  ASSERT_EQ(report.sections.size(), 3u);
+  for (const PageSection& section : report.sections) {
+    const PageTable& table = section.tables.at(0);
+    ASSERT_EQ(table.rows.size(), 4u);
+    for (std::size_t filter = 0; filter < 3; ++filter) {
+      EXPECT_LT(number(table, filter + 1, 0), number(table, 0, 0)) << section.title;
+      double least = INFINITY;
+      for (const PlotPoint& point : section.plots.at(0).series.at(filter).points) {
+        least = std::min(least, point.y);
+      }
+      EXPECT_EQ(number(table, filter + 1, 0), least);
+    }
+  }
+}
+
+TEST(Paper, BauszatsRenderingTimesGrowWithSamplesAndBounces) {
+  PaperReport report;
+  bauszat_rendering_times(kTiny, report);
+  ASSERT_EQ(report.claims.size(), 2u);
+  const PageTable& table = report.sections.at(0).tables.at(0);
+  EXPECT_GT(number(table, 0, 3), 0.0);
+  EXPECT_EQ(number(table, 1, 0), 238.5);
+}
+
+TEST(Paper, ChiusErrorsHaveARowForEachWay) {
+  PaperReport report;
+  chiu_errors(kTiny, report);
+  ASSERT_EQ(report.claims.size(), 2u);
+  const PageTable& table = report.sections.at(0).tables.at(0);
+  ASSERT_EQ(table.rows.size(), 4u);
+  // The atrium is full of edges: without antialiasing their error is there whatever the noise.
+  EXPECT_GT(number(table, 0, 2), 0.0);
+  EXPECT_LT(number(table, 3, 2), number(table, 0, 2));
+  EXPECT_NE(number(table, 3, 2), number(table, 2, 2));
 }
 
 TEST(PaperScene, StandsStillOrFlies) {

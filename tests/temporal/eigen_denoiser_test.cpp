@@ -287,6 +287,8 @@ TEST(EigenDenoiser, RefusesBadOptions) {
   refused([](EigenOptions& parts) { parts.quiet = kNan; });
   refused([](EigenOptions& parts) { parts.birth = 2.0; });
   refused([](EigenOptions& parts) { parts.young = -1.0f; });
+  refused([](EigenOptions& parts) { parts.changing = 0.0f; });
+  refused([](EigenOptions& parts) { parts.changing = kNan; });
   refused([](EigenOptions& parts) { parts.taps.plane_distance = 0.0f; });
   refused([](EigenOptions& parts) { parts.innovation.max_age = 0.0f; });
   EXPECT_THROW(EigenDenoiser({{8, 8}, 0}), std::invalid_argument);
