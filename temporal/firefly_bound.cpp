@@ -101,10 +101,10 @@ int FireflyBound::bound_block(const FireflyInputs& in, const Tile& tile,
 }
 
 void FireflyBound::count(const FireflyInputs& in, const FireflyOutputs& out, const Tile& area) {
-  EL_DCHECK(area.x0 % kBlock == 0 && area.y0 % kBlock == 0);
-  for (int y = area.y0; y < area.y1; y += kBlock) {
-    for (int x = area.x0; x < area.x1; x += kBlock) {
-      const int index = y / kBlock * grid_.columns() + x / kBlock;
+  EL_DCHECK(area.x0 % kFireflyBlock == 0 && area.y0 % kFireflyBlock == 0);
+  for (int y = area.y0; y < area.y1; y += kFireflyBlock) {
+    for (int x = area.x0; x < area.x1; x += kFireflyBlock) {
+      const int index = y / kFireflyBlock * grid_.columns() + x / kFireflyBlock;
       blocks_[static_cast<std::size_t>(index)] =
           count_fireflies(in, options_.deviations, out, grid_.tile(index));
     }
