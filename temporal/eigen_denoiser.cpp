@@ -136,12 +136,15 @@ void EigenDenoiser::warp_history() {
     std::swap(bases_, warped_bases_);
     std::swap(variance_, warped_variance_);
   }
+  const SumInputs history{warped_bases_, frame_, warped_variance_, memory_.active()};
   for_each_segment(tiles_, [&](const Tile& row) {
     if (moving) warp_row(row);
     for (int x = row.x0; x < row.x1; ++x) old_age_(x, row.y0) = warped_bases_.age(x, row.y0);
     if (report_.cut || is_empty(row)) return;
-    accumulate_tile({warped_bases_, frame_, warped_variance_, memory_.active()}, row,
-                    sums_[static_cast<std::size_t>(row.index)]);
+    accumulate_tile(history, row, sums_[static_cast<std::size_t>(row.index)]);
+  });
+  for_each_tile(tiles_, [&](const Tile& tile) {
+    admit_outliers(history, tile, sums_[static_cast<std::size_t>(tile.index)]);
   });
   std::swap(variance_, warped_variance_);
   if (still) report_.skipped_warp = static_cast<std::int64_t>(extent_.pixels());

@@ -28,6 +28,7 @@ struct TileSums {
   std::array<double, kMaxBases> lean{};                      ///< sum_p m^2 (V_i . r) (V_i . V_0)
   std::array<double, kMaxBases> reach{};                     ///< sum_p m^2 (V_i . V_0)^2
   double pixels = 0.0;                                       ///< with m > 0
+  double outliers = 0.0;                                     ///< of them, held back
 
   TileSums& operator+=(const TileSums& other);
   /// Variance of innovation[i] where the light's gain is 1 + delta, fitted to the same pixels:
@@ -45,12 +46,16 @@ struct SumInputs {
   int active = kMaxBases;        ///< bases that may hold energy; sums of the others stay 0
 };
 
-/// Adds the pixels of `tile` (at most kSegment wide) to `sums`. A pixel counts with
+/// Adds the pixels of `tile` (at most kSegment wide, or a part of one) to `sums`. A pixel counts
+/// with
 ///   m = n / (n + 1) / (variance + 0.01 * luminance(V_0)^2)
 /// (the inverse of its expected squared innovation, n its age), and with 0 where it has no history
 /// or u is not finite or beyond kLargestLight. Where m luminance(r)^2 > kOutlier^2, m is divided by
-/// their ratio, unless more than an eighth of the tile's pixels are such outliers: a few fireflies
-/// are no gain, a light that changed is. Sums along a row are in float, over rows in double.
+/// their ratio. Sums along a row are in float, over rows in double.
 void accumulate_tile(const SumInputs& in, const Tile& tile, TileSums& sums);
+
+/// A few fireflies are no gain, a light that changed is: where more than an eighth of the pixels of
+/// a whole tile are outliers, `sums` becomes that of full weights.
+void admit_outliers(const SumInputs& in, const Tile& tile, TileSums& sums);
 
 }  // namespace eigenlight

@@ -118,28 +118,16 @@ void AddRow(const Row& row, int bases, int active, TileSums& sums) {
   }
 }
 
-// Returns how many outliers the tile has.
-int AddTile(const SumInputs& in, const Tile& tile, bool is_bounded, TileSums& sums) {
+void AddTile(const SumInputs& in, const Tile& tile, bool is_bounded, TileSums& sums) {
   Row row;
-  int outliers = 0;
   for (int y = tile.y0; y < tile.y1; ++y) {
     LoadRow(in, {tile.x0, y, tile.x1, y + 1, tile.index}, row);
     const int count = tile.x1 - tile.x0;
     const auto used = std::count_if(row.weight, row.weight + count, [](float m) { return m > 0; });
     if (used == 0) continue;
     sums.pixels += static_cast<double>(used);
-    if (is_bounded) outliers += HoldBackOutliers(count, row);
+    if (is_bounded) sums.outliers += HoldBackOutliers(count, row);
     AddRow(row, in.bases.bases(), std::min(in.active, in.bases.bases()), sums);
-  }
-  return outliers;
-}
-
-void AccumulateTile(const SumInputs& in, const Tile& tile, TileSums& sums) {
-  TileSums bounded;
-  if (8.0 * AddTile(in, tile, true, bounded) <= bounded.pixels) {
-    sums += bounded;
-  } else {
-    (void)AddTile(in, tile, false, sums);
   }
 }
 
@@ -150,12 +138,19 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace eigenlight {
 
-HWY_EXPORT(AccumulateTile);
+HWY_EXPORT(AddTile);
 
 void accumulate_tile(const SumInputs& in, const Tile& tile, TileSums& sums) {
   EL_DCHECK(tile.x1 - tile.x0 <= kSegment);
   const FloatTrapsOff lanes_behind_masks_may_hold_anything;
-  HWY_DYNAMIC_DISPATCH(AccumulateTile)(in, tile, sums);
+  HWY_DYNAMIC_DISPATCH(AddTile)(in, tile, true, sums);
+}
+
+void admit_outliers(const SumInputs& in, const Tile& tile, TileSums& sums) {
+  if (8.0 * sums.outliers <= sums.pixels) return;
+  const FloatTrapsOff lanes_behind_masks_may_hold_anything;
+  sums = {};
+  HWY_DYNAMIC_DISPATCH(AddTile)(in, tile, false, sums);
 }
 
 TileSums& TileSums::operator+=(const TileSums& other) {
@@ -168,6 +163,7 @@ TileSums& TileSums::operator+=(const TileSums& other) {
   add(lean, other.lean);
   add(reach, other.reach);
   pixels += other.pixels;
+  outliers += other.outliers;
   return *this;
 }
 

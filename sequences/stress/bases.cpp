@@ -76,8 +76,10 @@ StressFinding check_orthogonality(Lab& lab) {
 // basis.
 double condition(const EigenState& state, const Frame& frame) {
   TileSums sums;
-  accumulate_tile({state.field, frame, state.variance, state.memory.active()},
-                  {0, 0, kExtent.width, kExtent.height, 0}, sums);
+  const SumInputs in{state.field, frame, state.variance, state.memory.active()};
+  const Tile all{0, 0, kExtent.width, kExtent.height, 0};
+  accumulate_tile(in, all, sums);
+  admit_outliers(in, all, sums);
   const auto energy = [&](int k) { return sums.gram[static_cast<std::size_t>(packed(k, k))]; };
   std::vector<int> used;
   for (int k = 0; k < state.memory.active(); ++k) {

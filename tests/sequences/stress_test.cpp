@@ -20,20 +20,11 @@ namespace {
 
 using testing::HasSubstr;
 
-// Known to be broken: the variance of the history does not follow a gain of a million, so that the
-// spatial filter blurs too much or too little until it is learned again; and a line of negative
-// light that stays is felt by the pixels beside it; and fireflies at 3 % of the pixels open the
-// gate of the correction, which spreads what the bound leaves of them.
-bool is_known_broken(std::string_view name) {
-  return name == "algebra.dimmed" || name == "algebra.flooded" || name == "values.signal" ||
-         name == "fireflies.trail";
-}
-
 // Statistics over a thousand seeds take too long here; `eigenlight stress` has them.
 std::vector<StressCase> quick_cases() {
   std::vector<StressCase> cases = stress_cases();
   std::erase_if(cases, [](const StressCase& c) {
-    return c.is_long || c.name.starts_with("statistics.") || is_known_broken(c.name);
+    return c.is_long || c.name.starts_with("statistics.");
   });
   return cases;
 }

@@ -41,7 +41,9 @@ struct Scene {
     const TileGrid& grid = coefficients.grid();
     std::vector<TileSums> out(static_cast<std::size_t>(grid.count()));
     for (int i = 0; i < grid.count(); ++i) {
-      accumulate_tile({field, frame, variance}, grid.tile(i), out[static_cast<std::size_t>(i)]);
+      TileSums& sums = out[static_cast<std::size_t>(i)];
+      accumulate_tile({field, frame, variance}, grid.tile(i), sums);
+      admit_outliers({field, frame, variance}, grid.tile(i), sums);
     }
     return out;
   }

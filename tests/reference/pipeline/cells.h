@@ -105,7 +105,7 @@ inline std::array<double, 3> take_cells(const Frame& frame, Cells& cells, int x,
 /// Correction::process: adds to the prediction, takes from the residual, leaves what it added.
 inline void correct(const CorrectionOptions& options, const Frame& frame, Residual& r) {
   for (auto& plane : r.correction) plane = Image(plane.extent);
-  const TileValues gate = open_gates(r);
+  const TileValues gate = r.change = open_gates(r);
   if (std::all_of(gate.values.begin(), gate.values.end(), [](double g) { return g == 0.0; })) {
     return;
   }

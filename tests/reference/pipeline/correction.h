@@ -21,14 +21,16 @@ struct Residual {
         value(extent),
         age(extent),
         variance(extent),
-        brightness({(extent.width + 7) / 8, (extent.height + 7) / 8}) {}
+        brightness({(extent.width + 7) / 8, (extent.height + 7) / 8}),
+        change(extent) {}
   /// v (1/s + 1/n)
   [[nodiscard]] double noise(int x, int y) const {
     return variance(x, y) * (1.0 / samples(x, y) + 1.0 / age(x, y));
   }
   Light prediction, light, correction;
   Image samples, confirmed, value, age, variance;
-  Image brightness;  // of blocks
+  Image brightness;   // of blocks
+  TileValues change;  // how surely the light of each tile changed
 };
 
 /// Visits the pixels of a block.

@@ -44,6 +44,7 @@ class EigenTwin {
     correct(options_.correction, in.frame, r_);
     memory_.advance(coefficients_, learning_);
     innovate(in.frame);
+    shorten_memory();
     update(in.newborn);
     if (in.newborn > 0) memory_.born(in.newborn);
     for (const int k : in.retired) {
@@ -166,6 +167,19 @@ class EigenTwin {
       variance(x, y) += (v - variance(x, y)) / std::min(new_age_(x, y) / s, 16.0);
     });
     r_.variance = std::move(variance);
+  }
+
+  void shorten_memory() {
+    const double most = static_cast<double>(options_.innovation.max_age);
+    const double least = std::min(static_cast<double>(options_.changing), most);
+    new_age_.each([&](int x, int y) {
+      const int columns = r_.change.grid.columns();
+      const double change = r_.change[y / kCoefficientTile * columns + x / kCoefficientTile];
+      const double longest = 1.0 / ((1.0 - change) / most + change / least);
+      if (change > 0.0) {
+        new_age_(x, y) = std::min(new_age_(x, y), std::max(longest, r_.samples(x, y)));
+      }
+    });
   }
 
   [[nodiscard]] double fresh_variance(const Frame& frame, glm::ivec2 p) const {
