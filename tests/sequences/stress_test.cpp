@@ -23,9 +23,8 @@ using testing::HasSubstr;
 // Statistics over a thousand seeds take too long here; `eigenlight stress` has them.
 std::vector<StressCase> quick_cases() {
   std::vector<StressCase> cases = stress_cases();
-  std::erase_if(cases, [](const StressCase& c) {
-    return c.is_long || c.name.starts_with("statistics.");
-  });
+  std::erase_if(cases,
+                [](const StressCase& c) { return c.is_long || c.name.starts_with("statistics."); });
   return cases;
 }
 
