@@ -53,9 +53,9 @@ struct GuidedScratch;
 /// holds a usable signal. It is linear in the signal and may thus leave its range, below 0 as well.
 ///
 /// A sum has the values of its own window only, so that nothing drifts and no firefly leaves a
-/// trace: sums over rows double, those over columns are the sum of the rest of one block of
-/// 2 radius + 1 rows and of the beginning of the next (van Herk 1992, Gil and Werman 1993, who take
-/// maxima). Additions of the first grow with the logarithm of the radius, of the second not at all.
+/// trace. Down and along, eight windows at a time are made of what leaves the next of them, what
+/// enters, and what all have in common, for which sums of eight rows or columns are kept: of
+/// additions only the latter grow with the radius, by one for eight windows and 4 pixels of it.
 class GuidedFilter {
  public:
   /// Throws std::invalid_argument on a bad size or option.
