@@ -32,7 +32,7 @@ struct GlobalIlluminationEdge {
   static constexpr bool kKeepsMajor = true;
 
   float normal_power = 32.0f;  ///< [8, 1000] sigma_N
-  float depth_scale = 4.0f;    ///< [0, 1000] sigma_z
+  float depth_scale = 16.0f;   ///< [0, 1000] sigma_z
   float blur_radius = 16.0f;   ///< [0, 64] pixels
   /// [0, 1] of the table's gamma; 0 for diffuse light, as in section 5.1: noise is worse than blur.
   float gamma_scale = 0.0f;
