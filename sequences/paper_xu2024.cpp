@@ -20,7 +20,7 @@ Paper xu2024() {
   return {"xu2024",
           "Xu, Yang, Qin, Sheng and Wu 2024, Fast Approximation to Large-Kernel Edge-Preserving "
           "Filters by Recursive Reconstruction from Image Pyramids",
-          "AMD Ryzen 7 5700X and Radeon RX 6800, 2560x1440, GPU time", rerun_xu2024};
+          "AMD Ryzen 7 5700X and Radeon RX 6800, 2560x1440, GPU time", rerun_xu2024, "384x216"};
 }
 
 }  // namespace eigenlight

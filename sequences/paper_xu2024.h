@@ -18,8 +18,4 @@ void xu_parts(const PaperRun& run, PaperReport& report);
 /// Fig. 12 and Table 2: time against the radius and against other filters.
 void xu_times(const PaperRun& run, PaperReport& report);
 
-/// Pictures are so many times as wide and high as the run asks for: the paper's are 2560x1440, and
-/// the smaller the picture, the more of it is edges.
-inline constexpr int kXuPictureScale = 3;
-
 }  // namespace eigenlight

@@ -125,7 +125,6 @@ void claim_parts(const Omissions& parts, PaperReport& report) {
 }  // namespace
 
 void xu_parts(const PaperRun& run, PaperReport& report) {
-  const Extent extent{run.extent.width * kXuPictureScale, run.extent.height * kXuPictureScale};
   Omissions parts{{{"down: no range function", 28.32, 0.96672, {}},
                    {"down: means of attributes", 41.72, 0.99514, {}},
                    {"up: no range function", 21.60, 0.79829, {}},
@@ -135,7 +134,7 @@ void xu_parts(const PaperRun& run, PaperReport& report) {
                    {"depth of field, all of it", 42.05, 0.99441, {}}}};
   for (const std::string_view name : kScenes) {
     run.step(fmt::format("Fig. 4 and 6, {}", name));
-    const PaperScene scene(name, Perturbation::kNone, extent, PaperScene::View::kFlight);
+    const PaperScene scene(name, Perturbation::kNone, run.extent, PaperScene::View::kFlight);
     add_likeness(scene.render(1, {run.frames.back()}).front(), parts);
   }
   claim_parts(parts, report);

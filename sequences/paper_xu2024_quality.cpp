@@ -141,10 +141,6 @@ void claim_uses(const std::array<UseFigures, 4>& uses, PaperReport& report) {
                            verdict(separable_loses, 4)});
 }
 
-Extent picture_extent(const PaperRun& run) {
-  return {run.extent.width * kXuPictureScale, run.extent.height * kXuPictureScale};
-}
-
 std::string size_note(Extent extent) {
   return fmt::format(
       "Radius {} at {}x{}, the paper's is 2560x1440. Values in [0, 1] as they are, peak 1; light "
@@ -174,7 +170,7 @@ Ways measure_raw(const Frame& frame, float exposure) {
 }  // namespace
 
 void xu_quality(const PaperRun& run, PaperReport& report) {
-  const Extent extent = picture_extent(run);
+  const Extent extent = run.extent;
   const std::array<UseFigures, 4> uses = measure_uses(run, extent);
   claim_uses(uses, report);
   PageTable table{
@@ -201,7 +197,7 @@ void xu_quality(const PaperRun& run, PaperReport& report) {
 }
 
 void xu_inputs(const PaperRun& run, PaperReport& report) {
-  const Extent extent = picture_extent(run);
+  const Extent extent = run.extent;
   PageTable table{"Diffuse light by input, dB, trained / untrained",
                   size_note(extent) +
                       "Raw: linear light, compared as display values (exposed, clipped, sRGB). "

@@ -18,8 +18,8 @@
 namespace eigenlight {
 namespace {
 
-// Times are of a picture as much wider and higher than the run's, 640x360 unless asked otherwise.
-constexpr int kScale = 5;
+// Times are of a picture this much wider and higher than the run's: 640x360 unless asked otherwise.
+constexpr int kScale = 5, kOver = 3;
 constexpr int kRadius = 16;
 // Filters take turns, so that what else the machine does falls on all alike.
 constexpr int kTurns = 9;
@@ -69,7 +69,7 @@ void claim_times(const std::vector<PlotPoint>& pyramid, const std::vector<TableR
 }  // namespace
 
 void xu_times(const PaperRun& run, PaperReport& report) {
-  const Extent extent{run.extent.width * kScale, run.extent.height * kScale};
+  const Extent extent{run.extent.width * kScale / kOver, run.extent.height * kScale / kOver};
   run.step(fmt::format("Fig. 12 and Table 2, {}x{}", extent.width, extent.height));
   const PaperScene scene("atrium", Perturbation::kNone, extent, PaperScene::View::kFlight);
   const Frame frame = std::move(scene.render(1, {run.frames.back()}).front());

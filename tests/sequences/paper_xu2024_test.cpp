@@ -110,7 +110,7 @@ TEST(PaperXu2024, LikenessIsOfThePixelsThatCount) {
 TEST(PaperXu2024, ReportsEveryClaim) {
   std::vector<std::string> steps;
   const PaperRun run{
-      {16, 9}, {0, 1, 2, 3, 4, 5, 6, 7}, [&](const std::string& what) { steps.push_back(what); }};
+      {48, 27}, {0, 1, 2, 3, 4, 5, 6, 7}, [&](const std::string& what) { steps.push_back(what); }};
   const Paper paper = xu2024();
   const PaperReport report = paper.rerun(run);
   ASSERT_EQ(report.sections.size(), 4u);
