@@ -169,12 +169,14 @@ void Correction::weigh_cells(const Tile& cells) {
       gate_.row({2 * x0, 2 * y, 2 * x1, 2 * y + 1, 0}, 0, gate);
       for (int x = x0; x < x1; ++x) {
         const int left = std::max(x - 1, 0), right = std::min(x + 1, extent.width - 1);
-        float sum = 0.0f;
+        float sum = 0.0f, known = 0.0f;
         for (int j = top; j <= bottom; ++j) {
-          for (int i = left; i <= right; ++i) sum += factor_(i, j);
+          for (int i = left; i <= right; ++i) {
+            sum += factor_(i, j);
+            known += cells_.count(i, j) > 0.0f ? 1.0f : 0.0f;
+          }
         }
-        const float kept =
-            gate[2 * (x - x0)] * sum / static_cast<float>((bottom - top + 1) * (right - left + 1));
+        const float kept = gate[2 * (x - x0)] * sum / std::max(known, 1.0f);
         if (kept > 0.5f) corrected += static_cast<std::int64_t>(cells_.count(x, y));
         for (auto& plane : cells_.mean) plane(x, y) *= kept;
       }

@@ -20,8 +20,8 @@ struct CorrectionOptions {
 /// The smoothed innovation. r = u - prediction has variance v (1/s + 1/n); averaged over cells of
 /// 2 x 2 pixels, an edge-avoiding filter that looks at geometry only turns it into m with variance
 /// q, and
-///   correction = m f g,   f = max(0, 1 - significance * q / luminance(m)^2), averaged over 3 x 3
-///   cells,
+///   correction = m f g,   f = max(0, 1 - significance * q / luminance(m)^2), averaged over
+///   those of 3 x 3 cells that have a confirmed pixel,
 /// goes to the prediction. A light that changes in a way no basis knows yet is so followed within
 /// the frame, by its spatial smoothness instead of its history.
 ///

@@ -49,7 +49,7 @@ inline void load_cell(const Residual& r, const Frame& frame, glm::ivec2 cell, Ce
   cells.value(3, cell.x, cell.y) = noise / std::max(count * count, 1.0);
 }
 
-/// mean f g, with f averaged over 3 x 3 cells.
+/// mean f g, with f averaged over those of 3 x 3 cells that have a confirmed pixel.
 inline void weigh_cells(const CorrectionOptions& options, const TileValues& gate, Cells& cells) {
   Image factor(cells.image.extent);
   factor.each([&](int x, int y) {
@@ -61,9 +61,9 @@ inline void weigh_cells(const CorrectionOptions& options, const TileValues& gate
     double sum = 0.0, count = 0.0;
     factor.each_around({x, y}, 1, [&](int i, int j) {
       sum += factor(i, j);
-      count += 1.0;
+      count += cells.geometry.guides.surface.id(i, j) != 0 ? 1.0 : 0.0;
     });
-    const double kept = sum / count * gate.at(2 * x, 2 * y);
+    const double kept = sum / std::max(count, 1.0) * gate.at(2 * x, 2 * y);
     for (std::size_t c = 0; c < 3; ++c) cells.value(c, x, y) *= kept;
   });
 }
