@@ -171,7 +171,8 @@ TEST_F(CliTest, EachMistakeIsOneClearLine) {
       {{"--frames", "1-q"}, "frames '1-q': expected 7, 1-10"},
       {{"--layers", "color,depth"}, "unknown layer 'depth'; known: color, "},
       {{"--perturb", "camera"}, "camera"},
-      {{"--aa", "fxaa"}, "unknown aa 'fxaa'; known: none, lookup, sraa, supersample:N"},
+      {{"--aa", "fxaa"},
+       "unknown aa 'fxaa'; known: none, lookup, sraa, sraa-geometry, supersample:N"},
       {{"--aa", "supersample:1"}, "aa 'supersample:1': expected supersample:N with N from 2"},
       {{"--frobnicate"}, "--frobnicate"},
   };

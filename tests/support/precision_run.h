@@ -16,9 +16,9 @@
 namespace eigenlight {
 
 /// Hands frames and samples on, and keeps the samples.
-class RecordedSource final : public FrameSource {
+class PrecisionSource final : public FrameSource {
  public:
-  RecordedSource(FrameSource& source, Extent extent)
+  PrecisionSource(FrameSource& source, Extent extent)
       : source_(source), extra_(extent), mean_(make_planes<3>(extent)) {}
 
   [[nodiscard]] bool next(Frame& frame) override {
@@ -120,7 +120,7 @@ class PrecisionRun {
   std::unique_ptr<Animation> animation_;
   std::vector<int> frames_;
   LiveSource live_;
-  RecordedSource source_;
+  PrecisionSource source_;
   EigenDenoiser fast_;
   twin::EigenTwin twin_;
   std::vector<bool> slots_;  // in use after the last frame
