@@ -22,8 +22,7 @@ GuideCounts CountGuides(const GBuffer& surface, const Tile& row) {
     const auto id = hn::LoadU(du, surface.id.row(y) + x);
     const auto inside = hn::FirstN(d, static_cast<std::size_t>(row.x1 - x));
     const auto shown = hn::And(inside, hn::RebindMask(d, hn::Ne(id, hn::Zero(du))));
-    // Comparisons with NaN are false. A component beyond kLargestNormal is no part of a unit vector
-    // either, so that the square says it all; only its overflow must not.
+    // Comparisons with NaN are false.
     const VF depth = hn::LoadU(d, surface.depth.row(y) + x);
     auto usable = hn::And(shown, hn::And(hn::Ge(depth, hn::Set(d, kNearestDepth)),
                                          hn::Le(depth, hn::Set(d, kFarthestDepth))));
