@@ -124,7 +124,8 @@ class SectionTest(unittest.TestCase):
 
     def test_the_readme_has_all_marks(self):
         readme = (ROOT / "README.md").read_text(encoding="utf-8")
-        names = ("quality", "roofline", "peer", "render", "compare", "scaling", "targets")
+        names = ("quality", "roofline", "peer", "render", "compare", "ablation", "scaling", "targets",
+                 "papers")
         report.set_sections(readme, {name: "new" for name in names})
 
 
@@ -187,6 +188,22 @@ class ReportTest(FolderTest):
         self.assertAlmostEqual(report.error_at(points, 10.0), 0.4)
         self.assertIsNone(report.error_at(points, 9.9))
         self.assertIsNone(report.error_at(points, 40.1))
+
+    def test_ablation_sets_each_part_beside_the_whole(self):
+        def cell(name, relmse, ms):
+            return {"contender": name, "spp": 3, "cpu_ms": {"denoise": ms, "total": 2 * ms},
+                    "mean": {"relmse": relmse, "temporal_error": 2 * relmse}}
+
+        results = {"settings": {"contenders": [{"label": "ours", "method": "ours"},
+                                               {"label": "ours-without-x", "without": "x"}],
+                                "ours": "ours", "width": 8, "height": 4, "frames": "1-2", "spp": [3]},
+                   "scenes": [{"name": "atrium", "cells": [cell("ours", 0.01, 10.0),
+                                                           cell("ours-without-x", 0.02, 5.0)]}]}
+        path = self.folder / "results.json"
+        path.write_text(json.dumps(results))
+        text = report.ablation(path)
+        self.assertIn("| all parts | 0.01 (1.00) | 0.02 (1.00) | 10.0 (1.00) | 20 (1.00) |", text)
+        self.assertIn("| without `x` | 0.02 (2.00) | 0.04 (2.00) | 5.0 (0.50) | 10 (0.50) |", text)
 
     def test_quality_is_a_table_of_methods_by_scenes(self):
         figures = {"atrium": {"noisy": {"relmse": 1.0}, "eigenlight": {"relmse": 0.01}},

@@ -159,6 +159,26 @@ def compare(path, plots):
     return "\n\n".join(["\n".join(parts), head, table.markdown(["scene", "ms"] + labels, rows)])
 
 
+def ablation(path):
+    """Our method with all its parts, and without each: figures, and their multiples of the whole."""
+    results = load_json(path)
+    settings, scene = results["settings"], results["scenes"][0]
+    cells = {cell["contender"]: cell for cell in scene["cells"]}
+    figures = {label: (cell["mean"]["relmse"], cell["mean"]["temporal_error"], cell["cpu_ms"]["denoise"],
+                       cell["cpu_ms"]["total"]) for label, cell in cells.items()}
+    whole = figures[settings["ours"]]
+    rows = []
+    for contender in settings["contenders"]:
+        row = ["all parts" if "without" not in contender else f"without `{contender['without']}`"]
+        for value, all_parts, form in zip(figures[contender["label"]], whole, (".3g", ".3g", ".1f", ".0f")):
+            row.append(f"{value:{form}} ({value / all_parts:.2f})")
+        rows.append(row)
+    head = (f"{scene['name']}, {settings['width']}x{settings['height']}, frames {settings['frames']}, "
+            f"{settings['spp'][0]} samples a pixel; in parentheses multiples of the whole:")
+    names = ["", "relMSE", "temporal error", "denoising, CPU ms", "with rendering, CPU ms"]
+    return head + "\n\n" + table.markdown(names, rows)
+
+
 def render(path):
     rows = []
     for entry in load_json(path)["benchmarks"]:
@@ -205,6 +225,8 @@ def sections(directory, plots):
         found["quality"] = quality(directory / "quality", settings)
     if (directory / "compare" / "results.json").exists():
         found["compare"] = compare(directory / "compare" / "results.json", plots)
+    if (directory / "ablate" / "results.json").exists():
+        found["ablation"] = ablation(directory / "ablate" / "results.json")
     reruns = sorted(directory.glob("paper-*.json"))
     if reruns:
         found["papers"] = papers(reruns)
