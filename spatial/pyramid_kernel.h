@@ -10,8 +10,10 @@
 
 namespace eigenlight {
 
-/// A tile of a coarser level is half as wide and high as one of the finer.
-inline constexpr int kPyramidTileWidth = 64, kPyramidTileHeight = 16;
+/// Wide enough for hardware to foresee the rows of the planes (64 columns take 1.4 times as long),
+/// while all that a tile reads, 260 kB, stays in the second-level cache. A tile of a coarser level
+/// is half as wide and high as one of the finer.
+inline constexpr int kPyramidTileWidth = 256, kPyramidTileHeight = 16;
 
 /// One level above the image, planar. Without surface: normal, depth, values and result are 0.
 struct PyramidPlanes {

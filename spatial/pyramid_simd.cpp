@@ -127,7 +127,7 @@ void DownTile(const PyramidView& fine, const GlobalIlluminationEdge& edge, const
   const F d;
   const int lanes = static_cast<int>(hn::Lanes(d));
   PyramidFineBlock block;
-  load_pyramid_block(fine, 2 * tile.x0, 2 * tile.y0, block);
+  load_pyramid_block(fine, 2 * tile.x0, 2 * tile.y0, 0, block);
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0; x < tile.x1; x += lanes) {
       Quad quad[4];
@@ -266,7 +266,7 @@ void ForEachBlend(const PyramidUpPass& up, const Tile& tile, const Store& store)
   const int lanes = static_cast<int>(hn::Lanes(F()));
   PyramidFineBlock fine;
   PyramidCoarseBlock coarse;
-  load_pyramid_block(up.fine, tile.x0, tile.y0, fine);
+  load_pyramid_block(up.fine, tile.x0, tile.y0, 1, fine);
   load_coarser_block(up.coarse, tile, coarse);
   const Interpolation interpolation(up.pass);
   for (int y = tile.y0; y < tile.y1; ++y) {
