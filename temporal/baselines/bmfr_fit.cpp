@@ -6,6 +6,7 @@
 
 #include "frame/random.h"
 #include "frame/tiles.h"
+#include "frame/usable_surface.h"
 
 namespace eigenlight {
 namespace {
@@ -65,11 +66,7 @@ class Block {
     const Extent extent = in_.usable.extent();
     for (int y = std::max(corner_.y, 0); y < std::min(corner_.y + kBlock, extent.height); ++y) {
       for (int x = std::max(corner_.x, 0); x < std::min(corner_.x + kBlock, extent.width); ++x) {
-        const bool surface = in_.guides.surface.id(x, y) != 0;
-        const Eigen::RowVector3f color =
-            surface
-                ? Eigen::RowVector3f(scaled(features_at(in_.guides, x, y)).transpose() * weights_)
-                : Eigen::RowVector3f::Zero();
+        const Color color = color_at(x, y);
         for (int c = 0; c < 3; ++c) {
           out[static_cast<std::size_t>(c)](x, y) = std::max(0.0f, color[c]);
         }
@@ -78,19 +75,36 @@ class Block {
   }
 
  private:
+  using Color = Eigen::RowVector3f;
+
+  [[nodiscard]] Color color_at(int x, int y) const {
+    const bool known = in_.usable(x, y) > 0.0f;
+    if (!is_usable_surface(in_.guides.surface, x, y)) {
+      const bool shown = known && in_.guides.surface.id(x, y) != 0;
+      return shown ? light_at(x, y) : Color::Zero();
+    }
+    const Color color = scaled(features_at(in_.guides, x, y)).transpose() * weights_;
+    return known ? color : color.cwiseMin(most_);
+  }
+
+  [[nodiscard]] Color light_at(int x, int y) const {
+    return {in_.light[0](x, y), in_.light[1](x, y), in_.light[2](x, y)};
+  }
+
   void gather() {
     const Extent extent = in_.usable.extent();
     for (int j = 0; j < kBlock; ++j) {
       for (int i = 0; i < kBlock; ++i) {
         const int x = mirrored(corner_.x + i, extent.width);
         const int y = mirrored(corner_.y + j, extent.height);
-        if (!(in_.usable(x, y) > 0.0f) || in_.guides.surface.id(x, y) == 0) continue;
+        if (!(in_.usable(x, y) > 0.0f) || !is_usable_surface(in_.guides.surface, x, y)) continue;
         a_.row(rows_) = features_at(in_.guides, x, y);
-        b_.row(rows_) << in_.light[0](x, y), in_.light[1](x, y), in_.light[2](x, y);
+        b_.row(rows_) = light_at(x, y);
         place_[static_cast<std::size_t>(rows_)] = j * kBlock + i;
         ++rows_;
       }
     }
+    if (rows_ > 0) most_ = b_.topRows(rows_).colwise().maxCoeff();
   }
 
   void scale() {
@@ -136,6 +150,7 @@ class Block {
   Eigen::MatrixXf a_{kBlock * kBlock, kFeatures}, b_{kBlock * kBlock, 3};
   std::array<int, kBlock * kBlock> place_{};  // of each row in the block
   Scale low_ = Scale::Zero(), factor_ = Scale::Ones();
+  Color most_ = Color::Zero();  // of the light in the fit
   Eigen::Matrix<float, kFeatures, 3> weights_;
 };
 
