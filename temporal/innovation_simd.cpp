@@ -55,15 +55,24 @@ void SumRow(const InnovationInputs& in, const Tile& tile, int y, Sums& sums) {
   const int shift = first - (tile.x0 - kRadius), end = shift + last - first;
   // Nothing lies to the left and to the right of the image.
   for (int i = 0; i < kRadius; ++i) confirmed[i] = value[i] = square[i] = 0.0f;
-  for (int i = 0; i < last - first; i += lanes) {
-    const auto inside = hn::FirstN(d, static_cast<std::size_t>(last - first - i));
-    const auto e = hn::IfThenElseZero(inside, hn::LoadU(d, in.residual.at(first, y) + i));
-    const auto used = hn::IfThenElseZero(inside, hn::LoadU(d, in.confirmed.at(first, y) + i));
-    hn::StoreU(used, d, confirmed + shift + i);
-    hn::StoreU(e, d, value + shift + i);
-    hn::StoreU(hn::Mul(e, e), d, square + shift + i);
+  const float* e = in.residual.at(first, y);
+  const float* used = in.confirmed.at(first, y);
+  const int seen = last - first;
+  const auto take = [&](auto tag, int i) {
+    const auto v = hn::LoadU(tag, e + i);
+    hn::StoreU(hn::LoadU(tag, used + i), tag, confirmed + shift + i);
+    hn::StoreU(v, tag, value + shift + i);
+    hn::StoreU(hn::Mul(v, v), tag, square + shift + i);
+  };
+  // The row starts off the lines, so that its padding does not reach to the end of a last vector:
+  // that one goes back over what others have taken.
+  int i = 0;
+  for (; i + lanes <= seen; i += lanes) take(d, i);
+  if (i < seen && seen >= lanes) take(d, seen - lanes);
+  if (seen < lanes) {
+    for (; i < seen; ++i) take(hn::CappedTag<float, 1>(), i);
   }
-  for (int i = end; i < count + 2 * kRadius; ++i) confirmed[i] = value[i] = square[i] = 0.0f;
+  for (i = end; i < count + 2 * kRadius; ++i) confirmed[i] = value[i] = square[i] = 0.0f;
   SumNine(confirmed, count, sums.count);
   SumNine(value, count, sums.mean);
   SumNine(square, count, sums.square);
