@@ -46,7 +46,7 @@ struct PreviousSurface {
 /// For an object that turned between the frames N is off by the turn; at film rates that stays
 /// within the plane bound. Motion or depth that is not finite leaves no valid tap.
 ///
-/// Fills taps for pixels [x0, x1) of row y; x1 - x0 <= kSegment.
+/// Fills taps for pixels [x0, x1) of row y; x0 a multiple of 16 (vectors), x1 - x0 <= kSegment.
 void compute_taps(const Frame& current, const PreviousSurface& previous, const TapOptions& options,
                   const Tile& row, TapSegment& taps);
 

@@ -73,12 +73,16 @@ class EigenTwin {
     Bases moved(bases_.age.extent);
     Image variance(bases_.age.extent);
     TapSegment taps;
-    bases_.age.each([&](int x, int y) {
-      compute_taps(frame, surfaces_.previous(), options_.taps, {x, y, x + 1, y + 1, 0}, taps);
+    bases_.age.each([&](int x, int y) {  // row by row, from left to right
+      const auto at = static_cast<std::size_t>(x % kSegment);
+      if (at == 0) {
+        const int end = std::min(x + kSegment, frame.extent().width);
+        compute_taps(frame, surfaces_.previous(), options_.taps, {x, y, end, y + 1, 0}, taps);
+      }
       for (std::size_t t = 0; t < 4; ++t) {
-        const double w = static_cast<double>(taps.weight[t][0]);
+        const double w = static_cast<double>(taps.weight[t][at]);
         if (w == 0.0) continue;
-        const int i = taps.x[t][0], j = taps.y[t][0];
+        const int i = taps.x[t][at], j = taps.y[t][at];
         for (int k = 0; k < kMaxBases; ++k) {
           for (std::size_t c = 0; c < 3; ++c) moved[k][c](x, y) += w * bases_[k][c](i, j);
         }
