@@ -46,8 +46,8 @@ const std::vector<char>& sound_state(const Method& method) {
 std::vector<char> damaged_state(const Method& method, std::string_view bytes) {
   std::vector<char> state = sound_state(method);
   if (!bytes.empty()) {
-    const auto cut = static_cast<std::size_t>(static_cast<unsigned char>(bytes[0]));
-    state.resize(state.size() - std::min(cut, state.size()));
+    const auto cut = static_cast<std::ptrdiff_t>(static_cast<unsigned char>(bytes[0]));
+    state.erase(state.end() - std::min(cut, std::ssize(state)), state.end());
     bytes.remove_prefix(1);
   }
   for (; bytes.size() >= 3 && !state.empty(); bytes.remove_prefix(3)) {
