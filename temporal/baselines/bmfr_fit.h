@@ -26,8 +26,8 @@ struct BmfrFitInputs {
 /// A block with fewer than 40 usable pixels (4 a feature, ours: the authors' blocks are always
 /// full) takes their mean, one without any is 0. Also ours: pixels that take no part in the fit get
 /// at most the block's largest light in each channel, for a polynomial may go anywhere beyond its
-/// points; surfaces of nonsense (usable_surface.h) take no part and keep their own light. `out` is 0
-/// without surface. Throws std::invalid_argument if extents differ.
+/// points; surfaces of nonsense (usable_surface.h) take no part and keep their own light. `out` is
+/// 0 without surface. Throws std::invalid_argument if extents differ.
 void bmfr_fit(const BmfrFitInputs& in, Planes<3>& out);
 
 }  // namespace eigenlight
