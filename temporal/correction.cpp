@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "frame/luminance.h"
+#include "frame/strips.h"
 
 namespace eigenlight {
 namespace {
@@ -68,13 +69,16 @@ double Correction::process(const CorrectionInputs& in, Planes<3>& prediction,
       if (chosen[static_cast<std::size_t>(cells.index)] != 0) body(cells);
     });
   };
-  on(loaded_, [&](const Tile& cells) { load_cells(in, prediction, cells, cells_); });
+  // These two read some twenty planes and need nothing of the rows around: line by line.
+  for_each_segment(grid_, [&](const Tile& row) {
+    if (loaded_[static_cast<std::size_t>(row.index)] != 0) load_cells(in, prediction, row, cells_);
+  });
   filter_.process(cells_.guides, wanted_, cells_.mean, cells_.noise);
   on(loaded_, [&](const Tile& cells) { find_factor(cells); });
   std::fill(corrected_.begin(), corrected_.end(), 0);
   on(wanted_, [&](const Tile& cells) { weigh_cells(cells); });
-  for_each_tile(gate_.grid(), [&](const Tile& tile) {
-    if (is_open(tile.index)) spread_cells(cells_, in, tile, {correction_, prediction, residual});
+  for_each_segment(gate_.grid(), [&](const Tile& row) {
+    if (is_open(row.index)) spread_cells(cells_, in, row, {correction_, prediction, residual});
   });
 
   std::int64_t confirmed = 0;
