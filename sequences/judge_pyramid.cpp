@@ -71,8 +71,8 @@ std::vector<PyramidJudgement> judge_pyramid(const PyramidPictures& pictures, int
     auto at = std::find_if(kinds.begin(), kinds.end(),
                            [&](const PyramidJudgement& j) { return j.kind == kind; });
     if (at == kinds.end()) at = kinds.insert(at, PyramidJudgement{kind, radius, 0, {}, {}});
-    const auto judge = [&](const PyramidWeights& weights) {
-      return likeness(example.filter(weights), example.target(), example.weight());
+    const auto judge = [&one = example](const PyramidWeights& weights) {
+      return likeness(one.filter(weights), one.target(), one.weight());
     };
     ++at->pictures;
     add(judge(trained_pyramid_table().weights(r)), at->trained);
