@@ -4,6 +4,8 @@
 #include <set>
 #include <string>
 
+#include "sequences/paper.h"
+
 namespace eigenlight {
 namespace {
 
@@ -55,9 +57,9 @@ void add_how(CLI::App& command, CompareSettings& settings) {
 
 // Papers come with scenes, methods and sample counts of their own.
 void add_paper(CLI::App& command, CompareSettings& settings) {
-  CLI::Option* paper = command.add_option("--paper", settings.paper,
-                                          "In place of scenes: measure again what a paper claims; "
-                                          "chen2012, bauszat2011, chiu2012, xu2024");
+  CLI::Option* paper =
+      command.add_option("--paper", settings.paper,
+                         "In place of scenes: measure again what a paper claims; " + paper_names());
   for (CLI::Option* other : command.get_options()) {
     static const std::set<std::string> kShared{"--help",   "--paper",   "--output", "--size",
                                                "--frames", "--threads", "--quiet",  "--json"};

@@ -91,14 +91,18 @@ const std::vector<Paper>& papers() {
   return kPapers;
 }
 
-const Paper& find_paper(std::string_view name) {
+std::string paper_names() {
   std::vector<std::string_view> names;
+  for (const Paper& paper : papers()) names.push_back(paper.name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+const Paper& find_paper(std::string_view name) {
   for (const Paper& paper : papers()) {
     if (paper.name == name) return paper;
-    names.push_back(paper.name);
   }
   throw std::invalid_argument(
-      fmt::format("--paper: unknown paper \"{}\", expected {}", name, fmt::join(names, ", ")));
+      fmt::format("--paper: unknown paper \"{}\", expected {}", name, paper_names()));
 }
 
 Page paper_page(const Paper& paper, const PaperRun& run, const PaperReport& report) {

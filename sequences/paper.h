@@ -47,6 +47,9 @@ struct Paper {
 
 [[nodiscard]] const std::vector<Paper>& papers();
 
+/// The names of all, with commas.
+[[nodiscard]] std::string paper_names();
+
 /// Throws std::invalid_argument listing the known papers if `name` is none.
 [[nodiscard]] const Paper& find_paper(std::string_view name);
 
