@@ -139,7 +139,7 @@ def peer_cpu_ms(peer, size):
     """Median CPU milliseconds of OIDN balanced on one frame."""
     # Threads that wait must sleep, or their waiting counts as work.
     environment = dict(os.environ, OMP_WAIT_POLICY="passive")
-    command = [peer, "--bench", size, "--repeat", "3"]
+    command = [peer, "--bench", size, "--repeat", "3", "--threads", "1"]
     try:
         run = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
     except (OSError, subprocess.CalledProcessError) as error:
