@@ -41,8 +41,8 @@ std::int64_t surface_pixels(const Frame& frame, const Tile& tile) {
 void AtrousOptions::validate() const {
   EL_CHECK(passes >= 1 && passes <= 6, "passes {}: expected 1 to 6", passes);
   EL_CHECK(radius == 1 || radius == 2, "radius {}: expected 1 or 2", radius);
-  EL_CHECK(luminance_sigmas > 0.0f && luminance_sigmas <= 100.0f,
-           "luminance_sigmas {}: expected (0, 100]", luminance_sigmas);
+  EL_CHECK(luminance_sigmas > 0.0f && (luminance_sigmas <= 100.0f || !looks_at_light()),
+           "luminance_sigmas {}: expected (0, 100] or inf", luminance_sigmas);
   EL_CHECK(plane_distance > 0.0f && plane_distance <= 1.0f,
            "plane_distance {}: expected (0, 1] of the depth", plane_distance);
 }

@@ -1,6 +1,7 @@
 // Edge-avoiding a-trous wavelet passes, steered by variance.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -14,12 +15,14 @@ namespace eigenlight {
 struct AtrousOptions {
   int passes = 3;  ///< [1, 6]; pass i reaches radius * 2^i pixels
   int radius = 2;  ///< 2: the 5 x 5 spline; 1: 3 x 3 binomial weights, a third of the cost
-  /// (0, 100] standard deviations of luminance that still count as the same light.
+  /// (0, 100] standard deviations of luminance that still count as the same light; +inf: light does
+  /// not count, only geometry.
   float luminance_sigmas = 3.0f;
   /// (0, 1] of the depth: distance off the pixel's plane that weighs a neighbor by 1/e.
   float plane_distance = 0.02f;
 
   void validate() const;  ///< throws std::invalid_argument naming the field
+  [[nodiscard]] bool looks_at_light() const { return !std::isinf(luminance_sigmas); }
 };
 
 /// Dammertz et al. 2010 with the variance steering of Schied et al. 2017 (SVGF, section 4.4):

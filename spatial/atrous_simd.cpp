@@ -77,6 +77,7 @@ struct Center {
   VF sum[3], weight, variance;
 };
 
+template <bool kLight>
 HWY_INLINE Center LoadCenter(const AtrousPass& pass, int x, int y, VF smooth_variance) {
   const F d;
   const Camera& camera = pass.guides.camera;
@@ -105,12 +106,14 @@ HWY_INLINE Center LoadCenter(const AtrousPass& pass, int x, int y, VF smooth_var
   at.plane_scale = hn::Div(hn::Set(d, 0.125f), hn::Max(distance, hn::Zero(d)));
 
   const VF color[3] = {load(pass.color[0]), load(pass.color[1]), load(pass.color[2])};
-  at.luminance = Luminance(color[0], color[1], color[2]);
-  const VF tolerance =
-      hn::MulAdd(hn::Set(d, pass.options.luminance_sigmas), hn::Sqrt(smooth_variance),
-                 hn::Mul(hn::Set(d, 1e-4f), hn::Abs(at.luminance)));
-  // 1e-20 only keeps black on black from dividing by zero.
-  at.luminance_scale = hn::Div(hn::Set(d, 0.125f), hn::Add(tolerance, hn::Set(d, 1e-20f)));
+  if constexpr (kLight) {
+    at.luminance = Luminance(color[0], color[1], color[2]);
+    const VF tolerance =
+        hn::MulAdd(hn::Set(d, pass.options.luminance_sigmas), hn::Sqrt(smooth_variance),
+                   hn::Mul(hn::Set(d, 1e-4f), hn::Abs(at.luminance)));
+    // 1e-20 only keeps black on black from dividing by zero.
+    at.luminance_scale = hn::Div(hn::Set(d, 0.125f), hn::Add(tolerance, hn::Set(d, 1e-20f)));
+  }
 
   // The center tap always counts, whatever its normal.
   const VF own = hn::Set(d, Weight(pass, 0, 0));
@@ -146,15 +149,18 @@ HWY_INLINE VF AlongRow(const TapRow& row, const Center& at) {
 }
 
 // The weight of the taps that `load` fetches, at column `x`, but for the kernel.
-template <typename Load>
+template <bool kLight, typename Load>
 HWY_INLINE VF TapWeight(const TapRow& row, VF x, VF along_row, Load load, const Center& at) {
   const F d;
   const VF along = hn::MulAdd(at.plane_x, x, along_row);
   const VF plane = hn::Abs(hn::MulSub(load(row.depth), along, at.plane));
-  const VF tap = Luminance(load(row.color[0]), load(row.color[1]), load(row.color[2]));
-  const VF light = hn::Abs(hn::Sub(tap, at.luminance));
-  const VF decay = hn::NegMulAdd(plane, at.plane_scale,
-                                 hn::NegMulAdd(light, at.luminance_scale, hn::Set(d, 1.0f)));
+  VF decay = hn::Set(d, 1.0f);
+  if constexpr (kLight) {
+    const VF tap = Luminance(load(row.color[0]), load(row.color[1]), load(row.color[2]));
+    const VF light = hn::Abs(hn::Sub(tap, at.luminance));
+    decay = hn::NegMulAdd(light, at.luminance_scale, decay);
+  }
+  decay = hn::NegMulAdd(plane, at.plane_scale, decay);
   VF cosine = hn::Mul(at.normal[0], load(row.normal[0]));
   cosine = hn::MulAdd(at.normal[1], load(row.normal[1]), cosine);
   cosine = hn::MulAdd(at.normal[2], load(row.normal[2]), cosine);
@@ -180,7 +186,7 @@ HWY_INLINE void AddTap(const TapRow& row, VF w, Load load, Center& at) {
 
 // A tap row for the pixels x .. x + lanes, of which some taps lie outside the image: kernel 0
 // there.
-template <int kRadius>
+template <int kRadius, bool kLight>
 void AddEdgeRow(const AtrousPass& pass, const TapRow& row, int x, Center& at) {
   const F d;
   const VF along = AlongRow(row, at);
@@ -197,12 +203,12 @@ void AddEdgeRow(const AtrousPass& pass, const TapRow& row, int x, Center& at) {
     const auto inside =
         hn::And(hn::Ge(column, hn::Zero(d)), hn::Le(column, hn::Set(d, static_cast<float>(last))));
     const VF kernel = hn::IfThenElseZero(inside, hn::Set(d, row.kernel[j + kRadius]));
-    AddTap(row, hn::Mul(kernel, TapWeight(row, column, along, load, at)), load, at);
+    AddTap(row, hn::Mul(kernel, TapWeight<kLight>(row, column, along, load, at)), load, at);
   }
 }
 
 // All weights first: what weights and sums need does not fit 16 registers at once.
-template <int kRadius>
+template <int kRadius, bool kLight>
 HWY_INLINE void AddRow(const TapRow& row, int step, int x, Center& at) {
   const F d;
   const VF along = AlongRow(row, at);
@@ -213,8 +219,8 @@ HWY_INLINE void AddRow(const TapRow& row, int step, int x, Center& at) {
   for (int j = -kRadius; j <= kRadius; ++j) {
     if (j == 0 && row.dy == 0) continue;
     const VF column = hn::Iota(d, static_cast<float>(x + j * step));
-    weight[j + kRadius] =
-        hn::Mul(hn::Set(d, row.kernel[j + kRadius]), TapWeight(row, column, along, loader(j), at));
+    weight[j + kRadius] = hn::Mul(hn::Set(d, row.kernel[j + kRadius]),
+                                  TapWeight<kLight>(row, column, along, loader(j), at));
   }
   for (int j = -kRadius; j <= kRadius; ++j) {
     if (j == 0 && row.dy == 0) continue;
@@ -250,24 +256,24 @@ int FindRows(const AtrousPass& pass, int y, TapRow (&rows)[2 * kRadius + 1]) {
   return count;
 }
 
-template <int kRadius>
+template <int kRadius, bool kLight>
 void FilterTile(const AtrousPass& pass, const Tile& tile) {
   const F d;
   const int lanes = static_cast<int>(hn::Lanes(d)), reach = kRadius * pass.step;
   const Extent extent = pass.variance.extent();
   alignas(64) Line smooth_variance = {};
   for (int y = tile.y0; y < tile.y1; ++y) {
-    SmoothVariance(pass.variance, tile.x0, tile.x1 - tile.x0, y, smooth_variance);
+    if (kLight) SmoothVariance(pass.variance, tile.x0, tile.x1 - tile.x0, y, smooth_variance);
     TapRow rows[2 * kRadius + 1];
     const int used = FindRows<kRadius>(pass, y, rows);
     for (int x = tile.x0; x < tile.x1; x += lanes) {
-      Center at = LoadCenter(pass, x, y, hn::Load(d, smooth_variance + (x - tile.x0)));
+      Center at = LoadCenter<kLight>(pass, x, y, hn::Load(d, smooth_variance + (x - tile.x0)));
       const bool inside = x - reach >= 0 && x + lanes + reach <= extent.width;
       for (int r = 0; r < used; ++r) {
         if (inside) {
-          AddRow<kRadius>(rows[r], pass.step, x, at);
+          AddRow<kRadius, kLight>(rows[r], pass.step, x, at);
         } else {
-          AddEdgeRow<kRadius>(pass, rows[r], x, at);
+          AddEdgeRow<kRadius, kLight>(pass, rows[r], x, at);
         }
       }
       StoreCenter(pass, at, x, y);
@@ -276,10 +282,11 @@ void FilterTile(const AtrousPass& pass, const Tile& tile) {
 }
 
 void AtrousTile(const AtrousPass& pass, const Tile& tile) {
+  const bool light = pass.options.looks_at_light();
   if (pass.options.radius == 1) {
-    FilterTile<1>(pass, tile);
+    light ? FilterTile<1, true>(pass, tile) : FilterTile<1, false>(pass, tile);
   } else {
-    FilterTile<2>(pass, tile);
+    light ? FilterTile<2, true>(pass, tile) : FilterTile<2, false>(pass, tile);
   }
 }
 

@@ -1,6 +1,7 @@
 #include "temporal/correction.h"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 #include "frame/luminance.h"
@@ -33,13 +34,15 @@ void CorrectionOptions::validate() const {
   EL_CHECK(passes >= 1 && passes <= 6, "correction passes {}: expected 1 to 6", passes);
 }
 
-// 100 sigmas of luminance: the filter is to look at geometry alone.
+// The filter looks at geometry alone.
 Correction::Correction(Extent extent, const CorrectionOptions& options)
     : options_(options),
       gate_(extent, 1),
       cells_(extent),
       grid_(stage_tiles(cells_.extent())),
-      filter_(cells_.extent(), {.passes = options.passes, .radius = 2, .luminance_sigmas = 100.0f}),
+      filter_(cells_.extent(), {.passes = options.passes,
+                                .radius = 1,
+                                .luminance_sigmas = std::numeric_limits<float>::infinity()}),
       correction_(make_planes<3>(extent)),
       factor_(cells_.extent()),
       blocks_(static_cast<std::size_t>(gate_.grid().count())),
@@ -143,8 +146,8 @@ void Correction::choose_cells() {
     const Tile tile = tiles.tile(index);
     mark(wanted_, {tile.x0 / 2, tile.y0 / 2, (tile.x1 + 1) / 2, (tile.y1 + 1) / 2, index}, 1);
   }
-  // Two taps to each side, 1 + 2 + 4 + ... cells apart; one more for the mean of factors.
-  const int reach = 2 * ((1 << options_.passes) - 1) + 1;
+  // One tap to each side, 1 + 2 + 4 + ... cells apart; one more for the mean of factors.
+  const int reach = (1 << options_.passes);
   for (int index = 0; index < grid_.count(); ++index) {
     if (wanted_[static_cast<std::size_t>(index)] != 0) mark(loaded_, grid_.tile(index), reach);
   }

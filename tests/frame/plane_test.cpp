@@ -38,6 +38,14 @@ TEST(Plane, PadsRowsToWholeLinesAndNotMore) {
   EXPECT_EQ(Plane<float>({5, 3}, 4).storage().size(), 96u);
 }
 
+TEST(Plane, RowsAndPlanesDoNotMeetInTheSameSetsOfACache) {
+  const Plane<float> first({1024, 8}), second({1024, 8});
+  EXPECT_EQ(first.stride(), 1024u + 16u);
+  const auto place = [](const float* p) { return reinterpret_cast<std::uintptr_t>(p) % 4096; };
+  EXPECT_NE(place(first.row(0)), place(first.row(4)));
+  EXPECT_NE(place(first.row(0)), place(second.row(0)));
+}
+
 TEST(Plane, AddressesPixelsByColumnRowAndChannel) {
   Plane<float> plane({5, 3}, 2);
   plane.at(4, 2)[1] = 7.0f;

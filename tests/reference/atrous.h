@@ -79,13 +79,16 @@ inline double atrous_weight(const Frame& guides, const AtrousOptions& options,
   if (!(depth > 0.0)) return 0.0;
   const double plane = std::abs(
       glm::dot(normal, detail::guide_position(guides, q) - detail::guide_position(guides, p)));
+  const auto weight = [&](double exponent) {
+    return std::pow(cosine, 64) * std::pow(std::max(0.0, 1.0 - exponent / 8.0), 8);
+  };
+  const double off_plane = plane / (options.plane_distance * depth);
+  if (std::isinf(options.luminance_sigmas)) return weight(off_plane);
   const double own = image.luminance(p.x, p.y);
   const double tolerance =
       options.luminance_sigmas * detail::smooth_sigma(image, p) + 1e-4 * std::abs(own);
   const double light = std::abs(image.luminance(q.x, q.y) - own);
-  const double exponent =
-      plane / (options.plane_distance * depth) + (light > 0.0 ? light / tolerance : 0.0);
-  return std::pow(cosine, 64) * std::pow(std::max(0.0, 1.0 - exponent / 8.0), 8);
+  return weight(off_plane + (light > 0.0 ? light / tolerance : 0.0));
 }
 
 inline AtrousImage atrous_pass(const Frame& guides, const AtrousOptions& options,

@@ -1,6 +1,8 @@
 // Cells of 2 x 2 pixels of the residual, smoothed and brought back, in double.
 #pragma once
 
+#include <limits>
+
 #include "reproject/taps.h"
 #include "temporal/residual_cells.h"
 #include "tests/reference/pipeline/correction.h"
@@ -112,7 +114,9 @@ inline void correct(const CorrectionOptions& options, const Frame& frame, Residu
   Cells cells(r.value.extent);
   cells.geometry.set_camera(frame.camera);
   Image(cells.image.extent).each([&](int x, int y) { load_cell(r, frame, {x, y}, cells); });
-  const AtrousOptions filter{.passes = options.passes, .radius = 2, .luminance_sigmas = 100.0f};
+  const AtrousOptions filter{.passes = options.passes,
+                             .radius = 1,
+                             .luminance_sigmas = std::numeric_limits<float>::infinity()};
   for (int pass = 0; pass < options.passes; ++pass) {
     cells.image = reference::atrous_pass(cells.geometry.guides, filter, cells.image, 1 << pass);
   }
