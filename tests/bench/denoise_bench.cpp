@@ -16,6 +16,9 @@
 //                depth, id) of this frame 5 and of the one before 5           estimate 3
 //   denoiser     the same                                                     the same, age,
 //                                                                             G-buffer 5
+//
+// The room's light changes everywhere in every frame, so that every part has work, but for
+// denoiser_steady, the same loop under light that does not change.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -193,15 +196,21 @@ void temporal(benchmark::State& state) {
   });
 }
 
-void denoiser(benchmark::State& state) {
+void run_denoiser(benchmark::State& state, RoomLight light) {
   const Setting setting(state);
-  Loop loop(setting);
+  Loop loop(setting, light);
   if (!loop.is_sound_at_start()) return state.SkipWithError("output is not finite");
   measure(state, setting.extent, loop_work(setting.bases), [&] {
     benchmark::DoNotOptimize(loop.step());
     return loop.cpu_ms();
   });
 }
+
+void denoiser(benchmark::State& state) { run_denoiser(state, RoomLight::kChanging); }
+
+void denoiser_steady(benchmark::State& state) { run_denoiser(state, RoomLight::kSteady); }
+
+void at_default_bases(benchmark::internal::Benchmark* bench) { add_sweep(bench, {.bases = {5}}); }
 
 BENCHMARK(reproject)->Apply(of_all_bases);
 BENCHMARK(tile_sums)->Apply(of_all_bases);
@@ -210,6 +219,7 @@ BENCHMARK(innovation)->Apply(of_one_basis);
 BENCHMARK(update)->Apply(of_all_bases);
 BENCHMARK(temporal)->Apply(of_all_threads);
 BENCHMARK(denoiser)->Apply(of_all_threads);
+BENCHMARK(denoiser_steady)->Apply(at_default_bases);
 
 }  // namespace
 }  // namespace eigenlight

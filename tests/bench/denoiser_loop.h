@@ -19,8 +19,8 @@ namespace eigenlight {
 /// `eigenlight` a few frames after its start.
 class Loop {
  public:
-  explicit Loop(const Setting& setting)
-      : source_(setting.lap()), denoiser_({setting.extent, setting.bases}) {
+  explicit Loop(const Setting& setting, RoomLight light = RoomLight::kChanging)
+      : source_(setting.lap(light)), denoiser_({setting.extent, setting.bases}) {
     for (int i = 0; i < 2 * RoomLap::kFrames; ++i) sound_ = is_sound(*step(), setting.extent);
   }
   const Planes<3>* step() {

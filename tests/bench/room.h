@@ -78,12 +78,15 @@ class Room {
   }
 };
 
+/// What the light of the room does from frame to frame.
+enum class RoomLight { kChanging, kSteady };
+
 /// The frames of one lap, ready to be replayed for ever: the last leads on to the first.
 struct RoomLap {
   static constexpr int kFrames = 4;
   static constexpr int kSamples = 3;  // Chen 2012
 
-  explicit RoomLap(Extent size) : extent(size) {
+  explicit RoomLap(Extent size, RoomLight kind = RoomLight::kChanging) : extent(size), light(kind) {
     for (int i = 0; i < kFrames; ++i) {
       Frame& frame = frames[static_cast<std::size_t>(i)];
       frame.surface.resize(extent);
@@ -96,12 +99,15 @@ struct RoomLap {
   }
 
   Extent extent;
+  RoomLight light;
   std::array<Frame, kFrames> frames;
 
  private:
+  static constexpr float kQuarter = 0.5f * 3.14159265f;  // kFrames of them are a lap
+
   // Steps of 0.014 a frame: 1 to 3 pixels at 1280x720 for surfaces 3 to 9 away.
   [[nodiscard]] Camera camera(int i) const {
-    const float angle = 0.5f * 3.14159265f * static_cast<float>(i);
+    const float angle = kQuarter * static_cast<float>(i);
     const glm::vec3 eye(0.3f + 0.01f * std::cos(angle), 1.6f + 0.01f * std::sin(angle), -4.2f);
     return look_at(eye, eye + glm::vec3(0.05f, 0.02f, 1.0f), {0, 1, 0}, 60.0f, extent);
   }
@@ -109,6 +115,7 @@ struct RoomLap {
   void fill(int i, const Tile& tile) {
     Frame& frame = frames[static_cast<std::size_t>(i)];
     const Camera previous = camera((i + kFrames - 1) % kFrames);
+    const float phase = light == RoomLight::kSteady ? 0.0f : kQuarter * static_cast<float>(i);
     for (int y = tile.y0; y < tile.y1; ++y) {
       for (int x = tile.x0; x < tile.x1; ++x) {
         const glm::vec2 center(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
@@ -126,13 +133,12 @@ struct RoomLap {
         frame.previous_depth(x, y) = before.z;
         frame.motion[0](x, y) = motion.x;
         frame.motion[1](x, y) = motion.y;
-        const float phase = 0.5f * 3.14159265f * static_cast<float>(i);
-        const glm::vec3 light = Room::light(point, hit.normal, phase);
+        const glm::vec3 radiance = Room::light(point, hit.normal, phase);
         for (int c = 0; c < 3; ++c) {
           const auto plane = static_cast<std::size_t>(c);
           frame.surface.normal[plane](x, y) = hit.normal[c];
           frame.surface.albedo[plane](x, y) = 0.3f + 0.1f * static_cast<float>(hit.id % 5);
-          frame.indirect[plane](x, y) = light[c] * noise(i, x, y);
+          frame.indirect[plane](x, y) = radiance[c] * noise(i, x, y);
         }
       }
     }

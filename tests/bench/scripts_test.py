@@ -17,6 +17,7 @@ HERE = pathlib.Path(__file__).parent
 sys.path.insert(0, str(HERE))
 
 import log  # noqa: E402
+import peer  # noqa: E402
 import table  # noqa: E402
 from results import load_results  # noqa: E402
 from utest import arrangements, ranks, u_test  # noqa: E402
@@ -35,6 +36,40 @@ def counted_p(a, b):
     deals = list(itertools.combinations(range(len(values)), len(a)))
     as_far = sum(abs(u(deal) - len(a) * len(b) / 2) >= distance for deal in deals)
     return as_far / len(deals)
+
+
+class PeerTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def program(self, name, text):
+        path = self.folder / name
+        path.write_text(f"#!/bin/sh\n{text}\n")
+        path.chmod(0o755)
+        return str(path)
+
+    def test_least_times_of_all_turns_stand_side_by_side(self):
+        # Each prints the next of its times; ours waits for none of the peer's.
+        theirs = self.program("peer", f"""cd {self.folder}; n=$(cat n 2>/dev/null || echo 0)
+echo $((n + 1)) > n; set -- 3000 2000 2500; shift $n; echo "cpu ms: min $1  median 1.0" """)
+        names = [f"{stage}/height:36/bases:5/threads:1/target:0" for stage in peer.STAGES]
+        results = {"benchmarks": [{"name": name, "run_name": name, "run_type": "iteration",
+                                   "label": "AVX2", "cpu_ms": 200.0 / (i + 1)}
+                                  for i, name in enumerate(names)]}
+        (self.folder / "results.json").write_text(json.dumps(results))
+        ours = self.program("bench", f"""for a; do case $a in --benchmark_out=*)
+cp {self.folder}/results.json ${{a#*=}};; esac; done""")
+        run = subprocess.run([sys.executable, str(HERE / "peer.py"), ours, theirs, "36",
+                              "--turns", "3"], capture_output=True, text=True, check=True)
+        self.assertIn("| 64x36 | 2000 | 200.0 | 10.0 | 100.0 | 20.0 |", run.stdout)
+
+    def test_a_peer_that_fails_or_is_silent_is_named(self):
+        for text, what in (("echo broken >&2; exit 3", "broken"), ("echo hello", "no CPU time")):
+            with self.assertRaises(SystemExit) as raised:
+                peer.peer_ms(self.program("peer", text), "64x36")
+            self.assertIn(what, str(raised.exception))
 
 
 class UTest(unittest.TestCase):

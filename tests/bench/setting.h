@@ -41,12 +41,12 @@ struct Setting {
     hwy::GetChosenTarget().Update(target);
     state.SetLabel(hwy::TargetName(target));
   }
-  /// Those of the last size are kept.
-  [[nodiscard]] const RoomLap& lap() const {
+  /// Those of the last size and light are kept.
+  [[nodiscard]] const RoomLap& lap(RoomLight light = RoomLight::kChanging) const {
     static std::unique_ptr<RoomLap> lap;
-    if (!lap || lap->extent != extent) {
+    if (!lap || lap->extent != extent || lap->light != light) {
       lap.reset();
-      lap = std::make_unique<RoomLap>(extent);
+      lap = std::make_unique<RoomLap>(extent, light);
     }
     return *lap;
   }

@@ -10,17 +10,11 @@ table.py targets RESULT.json
     CPU time of each stage by instruction set
 table.py scaling RESULT.json
     of bench_scaling: the loop by pixels and by bases, filters by radius
-table.py peer RESULT.json --peer PROGRAM
-    the denoiser beside OIDN balanced (the program oidn_peer) on frames of the same sizes
 
 RESULT.json comes from `bench_denoise --benchmark_out=RESULT.json --benchmark_out_format=json`.
 """
 
 import argparse
-import os
-import re
-import subprocess
-import sys
 
 from results import load_results
 
@@ -135,33 +129,6 @@ def scaling(results):
     ])
 
 
-def peer_cpu_ms(peer, size):
-    """Median CPU milliseconds of OIDN balanced on one frame."""
-    # Threads that wait must sleep, or their waiting counts as work.
-    environment = dict(os.environ, OMP_WAIT_POLICY="passive")
-    command = [peer, "--bench", size, "--repeat", "3", "--threads", "1"]
-    try:
-        run = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
-    except (OSError, subprocess.CalledProcessError) as error:
-        sys.exit(f"{' '.join(command)}: {getattr(error, 'stderr', None) or error}")
-    found = re.search(r"cpu ms: min [\d.]+ +median ([\d.]+)", run.stdout)
-    if not found:
-        sys.exit(f"{peer}: no CPU time in what it printed")
-    return float(found.group(1))
-
-
-def peer_table(results, program):
-    ours = [r for r in medians(results) if r.stage == "denoiser" and not r.target and r.threads == 1]
-    theirs = {size: peer_cpu_ms(program, size) for size in dict.fromkeys(r.size for r in ours)}
-    head = ["size", "OIDN balanced, CPU ms", "K", "denoiser, CPU ms", "OIDN / denoiser"]
-    rows = [
-        [r.size, f"{theirs[r.size]:.0f}", r.bases, f"{r['cpu_ms']:.1f}",
-         f"{theirs[r.size] / r['cpu_ms']:.1f}"]
-        for r in ours
-    ]
-    return markdown(head, rows)
-
-
 def numbers(text):
     return [int(word) for word in text.split(",")]
 
@@ -169,11 +136,10 @@ def numbers(text):
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("table", choices=["roofline", "loop", "targets", "scaling", "peer"])
+    parser.add_argument("table", choices=["roofline", "loop", "targets", "scaling"])
     parser.add_argument("result")
     parser.add_argument("--heights", type=numbers, help="such as 720,1080; without it all")
     parser.add_argument("--bases", type=numbers, help="such as 5; without it all")
-    parser.add_argument("--peer", help="the program oidn_peer")
     options = parser.parse_args()
     results = load_results(options.result)
     if options.table == "roofline":
@@ -182,12 +148,8 @@ def main():
         print(loop(results, options.heights, options.bases))
     elif options.table == "targets":
         print(targets(results))
-    elif options.table == "scaling":
-        print(scaling(results))
     else:
-        if not options.peer:
-            parser.error("peer: --peer PROGRAM is missing")
-        print(peer_table(results, options.peer))
+        print(scaling(results))
 
 
 if __name__ == "__main__":
