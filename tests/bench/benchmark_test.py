@@ -7,7 +7,6 @@ import json
 import pathlib
 import subprocess
 import sys
-import tempfile
 import unittest
 import xml.etree.ElementTree
 
@@ -18,15 +17,9 @@ sys.dont_write_bytecode = True
 import report  # noqa: E402
 import step_runner  # noqa: E402
 from chart import Chart, spread  # noqa: E402
+from folder_case import FolderTest  # noqa: E402
 
 SVG = "{http://www.w3.org/2000/svg}"
-
-
-class FolderTest(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
 
 
 class PapersTest(FolderTest):

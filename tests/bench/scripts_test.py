@@ -10,7 +10,6 @@ import pathlib
 import random
 import subprocess
 import sys
-import tempfile
 import unittest
 
 HERE = pathlib.Path(__file__).parent
@@ -19,6 +18,7 @@ sys.path.insert(0, str(HERE))
 import log  # noqa: E402
 import peer  # noqa: E402
 import table  # noqa: E402
+from folder_case import FolderTest  # noqa: E402
 from results import load_results  # noqa: E402
 from utest import arrangements, ranks, u_test  # noqa: E402
 
@@ -36,40 +36,6 @@ def counted_p(a, b):
     deals = list(itertools.combinations(range(len(values)), len(a)))
     as_far = sum(abs(u(deal) - len(a) * len(b) / 2) >= distance for deal in deals)
     return as_far / len(deals)
-
-
-class PeerTest(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
-    def program(self, name, text):
-        path = self.folder / name
-        path.write_text(f"#!/bin/sh\n{text}\n")
-        path.chmod(0o755)
-        return str(path)
-
-    def test_least_times_of_all_turns_stand_side_by_side(self):
-        # Each prints the next of its times; ours waits for none of the peer's.
-        theirs = self.program("peer", f"""cd {self.folder}; n=$(cat n 2>/dev/null || echo 0)
-echo $((n + 1)) > n; set -- 3000 2000 2500; shift $n; echo "cpu ms: min $1  median 1.0" """)
-        names = [f"{stage}/height:36/bases:5/threads:1/target:0" for stage in peer.STAGES]
-        results = {"benchmarks": [{"name": name, "run_name": name, "run_type": "iteration",
-                                   "label": "AVX2", "cpu_ms": 200.0 / (i + 1)}
-                                  for i, name in enumerate(names)]}
-        (self.folder / "results.json").write_text(json.dumps(results))
-        ours = self.program("bench", f"""for a; do case $a in --benchmark_out=*)
-cp {self.folder}/results.json ${{a#*=}};; esac; done""")
-        run = subprocess.run([sys.executable, str(HERE / "peer.py"), ours, theirs, "36",
-                              "--turns", "3"], capture_output=True, text=True, check=True)
-        self.assertIn("| 64x36 | 2000 | 200.0 | 10.0 | 100.0 | 20.0 |", run.stdout)
-
-    def test_a_peer_that_fails_or_is_silent_is_named(self):
-        for text, what in (("echo broken >&2; exit 3", "broken"), ("echo hello", "no CPU time")):
-            with self.assertRaises(SystemExit) as raised:
-                peer.peer_ms(self.program("peer", text), "64x36")
-            self.assertIn(what, str(raised.exception))
 
 
 class UTest(unittest.TestCase):
@@ -112,9 +78,9 @@ class UTest(unittest.TestCase):
             u_test([], [1.0])
 
 
-def benchmark(stage, ratio, **changes):
-    """An entry as google/benchmark writes it: 720p, K = 5 at `ratio` times the copy's 10 ms."""
-    name = f"{stage}/height:720/bases:5/threads:1/target:0/manual_time"
+def benchmark(stage, ratio, height=720, **changes):
+    """An entry as google/benchmark writes it: K = 5 at `ratio` times the copy's 10 ms."""
+    name = f"{stage}/height:{height}/bases:5/threads:1/target:0/manual_time"
     entry = {"name": name, "run_name": name, "run_type": "iteration", "label": "AVX3",
              "bytes": 2e8, "copy_ms": 10.0, "cpu_ms": 10.0 * ratio, "ratio": ratio,
              "ns_per_pixel": 20.0, "pixels_per_second": 5e7}
@@ -122,12 +88,33 @@ def benchmark(stage, ratio, **changes):
     return entry
 
 
-class ScriptTest(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+class PeerTest(FolderTest):
+    def program(self, name, text):
+        path = self.folder / name
+        path.write_text(f"#!/bin/sh\n{text}\n")
+        path.chmod(0o755)
+        return str(path)
 
+    def test_least_times_of_all_turns_stand_side_by_side(self):
+        # Each prints the next of its times; ours waits for none of the peer's.
+        theirs = self.program("peer", f"""cd {self.folder}; n=$(cat n 2>/dev/null || echo 0)
+echo $((n + 1)) > n; set -- 3000 2000 2500; shift $n; echo "cpu ms: min $1  median 1.0" """)
+        entries = [benchmark(stage, 20.0 / (i + 1), height=36) for i, stage in enumerate(peer.STAGES)]
+        (self.folder / "results.json").write_text(json.dumps({"benchmarks": entries}))
+        ours = self.program("bench", f"""for a; do case $a in --benchmark_out=*)
+cp {self.folder}/results.json ${{a#*=}};; esac; done""")
+        run = subprocess.run([sys.executable, str(HERE / "peer.py"), ours, theirs, "36",
+                              "--turns", "3"], capture_output=True, text=True, check=True)
+        self.assertIn("| 64x36 | 2000 | 200.0 | 10.0 | 100.0 | 20.0 |", run.stdout)
+
+    def test_a_peer_that_fails_or_is_silent_is_named(self):
+        for text, what in (("echo broken >&2; exit 3", "broken"), ("echo hello", "no CPU time")):
+            with self.assertRaises(SystemExit) as raised:
+                peer.peer_ms(self.program("peer", text), "64x36")
+            self.assertIn(what, str(raised.exception))
+
+
+class ScriptTest(FolderTest):
     def write(self, name, entries):
         path = self.folder / name
         path.write_text(json.dumps({"context": {"num_cpus": 2}, "benchmarks": entries}))
