@@ -40,6 +40,8 @@ inline void check_extent(Extent extent) {
 
 namespace detail {
 
+inline constexpr std::size_t kLine = 64;  // bytes
+
 // A first-level cache finds lines by their address modulo 4 kB, in 8 ways or so: were the rows of a
 // plane, and those of the other planes, multiples of that apart, a kernel that reads more than 8 of
 // them would find none of its lines again.
@@ -53,7 +55,7 @@ inline constexpr std::size_t kAlias = 4096;
 /// Lines before the first of a large plane: planes that are made one after another differ.
 [[nodiscard]] inline std::size_t next_start() {
   static std::atomic<unsigned> made = 0;
-  return made.fetch_add(5, std::memory_order_relaxed) % (kAlias / 64);
+  return made.fetch_add(5, std::memory_order_relaxed) % (kAlias / kLine);
 }
 
 }  // namespace detail
@@ -69,7 +71,8 @@ class Plane {
   static_assert(std::is_trivially_copyable_v<T>);
 
  public:
-  static constexpr std::size_t kLine = 64;  ///< bytes: one cache line, one AVX-512 vector
+  static constexpr std::size_t kLine =
+      detail::kLine;  ///< bytes: one cache line, one AVX-512 vector
 
   Plane() = default;
   /// `channels` values stand side by side at each pixel. Throws std::invalid_argument on a bad

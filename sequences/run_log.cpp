@@ -125,6 +125,7 @@ void RunLog::append(const FrameReport& report, int spp, const FrameOutput& outpu
                    {{"warp", report.skipped_warp},
                     {"surface", report.skipped_surface},
                     {"filter", report.skipped_filter},
+                    {"geometry", report.skipped_geometry},
                     {"guided", report.skipped_guided},
                     {"correction", report.skipped_correction}}},
                   {"non_finite_pixels", report.non_finite_pixels},

@@ -55,7 +55,7 @@ struct FrameOutput {
 ///   extra_samples, surface_pixels, new_pixels
 ///   new_share            new_pixels / surface_pixels; 0 without surface
 ///   rank                 mean number of bases in use per tile with surface
-///   skipped              {warp, surface, filter, guided}, in pixels
+///   skipped              {warp, surface, filter, geometry, guided, correction}, in pixels
 ///   non_finite_pixels, non_finite_samples, unguided_pixels, bounded_pixels
 class RunLog {
  public:

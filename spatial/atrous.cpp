@@ -8,6 +8,15 @@
 namespace eigenlight {
 namespace {
 
+// Of plane_distance: the most that pixels of one plane may lie off it. A weight of exp(-2e-3) is as
+// good as 1 to a denoiser, and rounding of depths is 1e-7 of them.
+constexpr float kPlanarTolerance = 1e-3f;
+
+const AtrousOptions& valid(const AtrousOptions& options) {
+  options.validate();
+  return options;
+}
+
 bool is_quiet(const Planes<3>& color, const Plane<float>& variance, float quiet, const Tile& tile) {
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0; x < tile.x1; ++x) {
@@ -48,14 +57,13 @@ void AtrousOptions::validate() const {
 }
 
 Atrous::Atrous(Extent extent, const AtrousOptions& options)
-    : options_(options),
+    : options_(valid(options)),
       grid_(stage_tiles(extent)),
+      planar_(extent, kPlanarTolerance * options.plane_distance),
       scratch_color_(make_planes<3>(extent)),
       scratch_variance_(extent),
-      surface_(static_cast<std::size_t>(grid_.count())),
-      skipped_(surface_.size()) {
-  options.validate();
-}
+      noisy_(static_cast<std::size_t>(grid_.count())),
+      skipped_(noisy_.size()) {}
 
 void Atrous::check(const Frame& guides, const Planes<3>& color,
                    const Plane<float>& variance) const {
@@ -65,18 +73,29 @@ void Atrous::check(const Frame& guides, const Planes<3>& color,
            extent.height);
 }
 
-void Atrous::run_pass(const Frame& guides, int pass, const std::function<bool(const Tile&)>& wanted,
+void Atrous::find_planes(const Frame& guides, std::span<const std::uint8_t> wanted) {
+  if (options_.skip_planar) {
+    planar_.find(guides, wanted);
+  } else {
+    planar_.clear();
+  }
+}
+
+void Atrous::run_pass(const Frame& guides, int pass, std::span<const std::uint8_t> wanted,
                       Planes<3>& color, Plane<float>& variance) {
-  const AtrousPass work{guides,   options_,       1 << pass,        color,
-                        variance, scratch_color_, scratch_variance_};
+  const AtrousPass work{guides, options_, planar_,        1 << pass,
+                        color,  variance, scratch_color_, scratch_variance_};
+  const auto is_wanted = [&](const Tile& tile) {
+    return wanted[static_cast<std::size_t>(tile.index)] != 0;
+  };
   for_each_strip(grid_, [&](const Strip& strip) {
     // Neighbors that are wanted alike are filtered as one.
     Tile area = grid_.tile(strip.area.index);
-    bool filtered = wanted(area);
+    bool filtered = is_wanted(area);
     const auto run = [&] { filtered ? atrous_tile(work, area) : copy_tile(work, area); };
     for (int i = 1; i < strip.tiles; ++i) {
       const Tile tile = grid_.tile(strip.area.index + i);
-      const bool next = wanted(tile);
+      const bool next = is_wanted(tile);
       if (next != filtered) {
         run();
         area = tile;
@@ -93,18 +112,21 @@ void Atrous::run_pass(const Frame& guides, int pass, const std::function<bool(co
 std::int64_t Atrous::process(const Frame& guides, float quiet, Planes<3>& color,
                              Plane<float>& variance) {
   check(guides, color, variance);
-  std::fill(skipped_.begin(), skipped_.end(), 0);
-  for (int pass = 0; pass < options_.passes; ++pass) {
-    run_pass(
-        guides, pass,
-        [&](const Tile& tile) {
-          const auto index = static_cast<std::size_t>(tile.index);
-          if (pass == 0) surface_[index] = surface_pixels(guides, tile);
-          if (surface_[index] > 0 && !is_quiet(color, variance, quiet, tile)) return true;
-          if (pass == 0) skipped_[index] = surface_[index];
-          return false;
-        },
-        color, variance);
+  for_each_tile(grid_, [&](const Tile& tile) {
+    const auto index = static_cast<std::size_t>(tile.index);
+    const std::int64_t surface = surface_pixels(guides, tile);
+    const bool noisy = surface > 0 && !is_quiet(color, variance, quiet, tile);
+    noisy_[index] = noisy ? 1 : 0;
+    skipped_[index] = noisy ? 0 : surface;
+  });
+  find_planes(guides, noisy_);
+  run_pass(guides, 0, noisy_, color, variance);
+  for (int pass = 1; pass < options_.passes; ++pass) {
+    for_each_tile(grid_, [&](const Tile& tile) {
+      std::uint8_t& noisy = noisy_[static_cast<std::size_t>(tile.index)];
+      if (noisy != 0 && is_quiet(color, variance, quiet, tile)) noisy = 0;
+    });
+    run_pass(guides, pass, noisy_, color, variance);
   }
   return std::accumulate(skipped_.begin(), skipped_.end(), std::int64_t{0});
 }
@@ -114,11 +136,9 @@ void Atrous::process(const Frame& guides, std::span<const std::uint8_t> wanted, 
   check(guides, color, variance);
   EL_CHECK(wanted.size() == static_cast<std::size_t>(grid_.count()), "{} wanted flags for {} tiles",
            wanted.size(), grid_.count());
+  find_planes(guides, wanted);
   for (int pass = 0; pass < options_.passes; ++pass) {
-    run_pass(
-        guides, pass,
-        [&](const Tile& tile) { return wanted[static_cast<std::size_t>(tile.index)] != 0; }, color,
-        variance);
+    run_pass(guides, pass, wanted, color, variance);
   }
 }
 

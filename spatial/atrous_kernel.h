@@ -12,6 +12,7 @@ inline constexpr int kAtrousWidth = kStripWidth;
 struct AtrousPass {
   const Frame& guides;
   const AtrousOptions& options;
+  const PlanarBlocks& planar;
   int step;  ///< pixels between taps
   const Planes<3>& color;
   const Plane<float>& variance;

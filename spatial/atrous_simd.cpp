@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "frame/float_traps.h"
 #include "frame/usable_surface.h"
@@ -66,24 +67,26 @@ void SmoothVariance(const Plane<float>& variance, int x0, int count, int y, floa
   }
 }
 
-// What a vector of output pixels compares its neighbors with, and what it has gathered of them.
-struct Center {
-  VF normal[3];
-  VF plane_x, plane_y, plane_c;  // N . ray(x, y) = plane_x x + plane_y y + plane_c
-  VF plane;                      // N . (X - eye)
-  VF plane_scale;                // 1 / (8 plane_distance depth)
-  VF luminance;
-  VF luminance_scale;  // 1 / (8 (sigmas sigma + 1e-4 luminance))
-  VF sum[3], weight, variance;
+// What weighs a tap.
+template <bool kGeometryWeighs, bool kLightWeighs>
+struct Weighing {
+  static constexpr bool kGeometry = kGeometryWeighs, kLight = kLightWeighs;
 };
 
-template <bool kLight>
-HWY_INLINE Center LoadCenter(const AtrousPass& pass, int x, int y, VF smooth_variance) {
+// The planes that a vector of output pixels lies in.
+struct Tangents {
+  VF normal[3];
+  VF x, y, c;   // N . ray(column, line) = x column + y line + c
+  VF distance;  // N . (X - eye)
+  VF scale;     // 1 / (8 plane_distance depth)
+};
+
+HWY_INLINE Tangents LoadTangents(const AtrousPass& pass, int x, int y) {
   const F d;
   const Camera& camera = pass.guides.camera;
   const glm::mat3& to_view = camera.world_to_view;
   const auto load = [&](const Plane<float>& plane) { return hn::LoadU(d, plane.row(y) + x); };
-  Center at;
+  Tangents at;
   for (std::size_t c = 0; c < 3; ++c) at.normal[c] = load(pass.guides.surface.normal[c]);
   const auto view_normal = [&](int r) {
     VF v = hn::Mul(hn::Set(d, to_view[0][r]), at.normal[0]);
@@ -91,36 +94,52 @@ HWY_INLINE Center LoadCenter(const AtrousPass& pass, int x, int y, VF smooth_var
     return hn::MulAdd(hn::Set(d, to_view[2][r]), at.normal[2], v);
   };
   const VF inverse_focal = hn::Set(d, 1.0f / camera.focal);
-  at.plane_x = hn::Mul(view_normal(0), inverse_focal);
-  at.plane_y = hn::Mul(view_normal(1), inverse_focal);
-  at.plane_c =
-      hn::NegMulAdd(at.plane_x, hn::Set(d, camera.center.x - 0.5f),
-                    hn::NegMulAdd(at.plane_y, hn::Set(d, camera.center.y - 0.5f), view_normal(2)));
+  at.x = hn::Mul(view_normal(0), inverse_focal);
+  at.y = hn::Mul(view_normal(1), inverse_focal);
+  at.c = hn::NegMulAdd(at.x, hn::Set(d, camera.center.x - 0.5f),
+                       hn::NegMulAdd(at.y, hn::Set(d, camera.center.y - 0.5f), view_normal(2)));
   const VF depth = load(pass.guides.surface.depth);
   const VF column = hn::Iota(d, static_cast<float>(x));
   const VF line = hn::Set(d, static_cast<float>(y));
-  at.plane =
-      hn::Mul(depth, hn::MulAdd(at.plane_x, column, hn::MulAdd(at.plane_y, line, at.plane_c)));
+  at.distance = hn::Mul(depth, hn::MulAdd(at.x, column, hn::MulAdd(at.y, line, at.c)));
   // A depth that is none must not turn the decay into a growth: it leaves no valid tap.
-  const VF distance = hn::Mul(hn::Set(d, pass.options.plane_distance), depth);
-  at.plane_scale = hn::Div(hn::Set(d, 0.125f), hn::Max(distance, hn::Zero(d)));
-
-  const VF color[3] = {load(pass.color[0]), load(pass.color[1]), load(pass.color[2])};
-  if constexpr (kLight) {
-    at.luminance = Luminance(color[0], color[1], color[2]);
-    const VF tolerance =
-        hn::MulAdd(hn::Set(d, pass.options.luminance_sigmas), hn::Sqrt(smooth_variance),
-                   hn::Mul(hn::Set(d, 1e-4f), hn::Abs(at.luminance)));
-    // 1e-20 only keeps black on black from dividing by zero.
-    at.luminance_scale = hn::Div(hn::Set(d, 0.125f), hn::Add(tolerance, hn::Set(d, 1e-20f)));
-  }
-
-  // The center tap always counts, whatever its normal.
-  const VF own = hn::Set(d, Weight(pass, 0, 0));
-  for (int c = 0; c < 3; ++c) at.sum[c] = hn::Mul(own, color[c]);
-  at.weight = own;
-  at.variance = hn::Mul(hn::Mul(own, own), load(pass.variance));
+  const VF tolerance = hn::Mul(hn::Set(d, pass.options.plane_distance), depth);
+  at.scale = hn::Div(hn::Set(d, 0.125f), hn::Max(tolerance, hn::Zero(d)));
   return at;
+}
+
+// The light of the output pixels.
+struct Light {
+  VF luminance;
+  VF scale;  // 1 / (8 (sigmas sigma + 1e-4 luminance))
+};
+
+HWY_INLINE Light LoadLight(const AtrousPass& pass, int x, int y, VF smooth_variance) {
+  const F d;
+  const auto load = [&](std::size_t c) { return hn::LoadU(d, pass.color[c].row(y) + x); };
+  const VF luminance = Luminance(load(0), load(1), load(2));
+  const VF tolerance =
+      hn::MulAdd(hn::Set(d, pass.options.luminance_sigmas), hn::Sqrt(smooth_variance),
+                 hn::Mul(hn::Set(d, 1e-4f), hn::Abs(luminance)));
+  // 1e-20 only keeps black on black from dividing by zero.
+  return {luminance, hn::Div(hn::Set(d, 0.125f), hn::Add(tolerance, hn::Set(d, 1e-20f)))};
+}
+
+// What the output pixels have gathered.
+struct Sums {
+  VF color[3], weight, variance;
+};
+
+// The center tap always counts, whatever its normal.
+HWY_INLINE Sums LoadCenter(const AtrousPass& pass, int x, int y) {
+  const F d;
+  const VF own = hn::Set(d, Weight(pass, 0, 0));
+  const auto load = [&](const Plane<float>& plane) { return hn::LoadU(d, plane.row(y) + x); };
+  Sums sums;
+  for (std::size_t c = 0; c < 3; ++c) sums.color[c] = hn::Mul(own, load(pass.color[c]));
+  sums.weight = own;
+  sums.variance = hn::Mul(hn::Mul(own, own), load(pass.variance));
+  return sums;
 }
 
 // The planes of one row of taps.
@@ -143,106 +162,95 @@ struct TapRow {
   }
 };
 
-// N . ray at column 0 of a row.
-HWY_INLINE VF AlongRow(const TapRow& row, const Center& at) {
-  return hn::MulAdd(at.plane_y, hn::Set(F(), static_cast<float>(row.line)), at.plane_c);
-}
+// Taps of a vector of output pixels at column x that all lie within the columns of the image.
+struct InnerTaps {
+  int x, step;
 
-// The weight of the taps that `load` fetches, at column `x`, but for the kernel.
-template <bool kLight, typename Load>
-HWY_INLINE VF TapWeight(const TapRow& row, VF x, VF along_row, Load load, const Center& at) {
-  const F d;
-  const VF along = hn::MulAdd(at.plane_x, x, along_row);
-  const VF plane = hn::Abs(hn::MulSub(load(row.depth), along, at.plane));
-  VF decay = hn::Set(d, 1.0f);
-  if constexpr (kLight) {
-    const VF tap = Luminance(load(row.color[0]), load(row.color[1]), load(row.color[2]));
-    const VF light = hn::Abs(hn::Sub(tap, at.luminance));
-    decay = hn::NegMulAdd(light, at.luminance_scale, decay);
+  [[nodiscard]] HWY_INLINE VF Load(const float* source, int j) const {
+    return hn::LoadU(F(), source + x + j * step);
   }
-  decay = hn::NegMulAdd(plane, at.plane_scale, decay);
-  VF cosine = hn::Mul(at.normal[0], load(row.normal[0]));
-  cosine = hn::MulAdd(at.normal[1], load(row.normal[1]), cosine);
-  cosine = hn::MulAdd(at.normal[2], load(row.normal[2]), cosine);
+  [[nodiscard]] HWY_INLINE VF Kernel(float weight, int) const { return hn::Set(F(), weight); }
+};
+
+// Taps of which some lie beside the image: those weigh nothing.
+struct EdgeTaps {
+  int x, step, last;
+
+  [[nodiscard]] VF Load(const float* source, int j) const {
+    const F d;
+    alignas(64) float values[64];
+    for (int l = 0; l < static_cast<int>(hn::Lanes(d)); ++l) {
+      values[l] = source[std::clamp(x + j * step + l, 0, last)];
+    }
+    return hn::Load(d, values);
+  }
+  [[nodiscard]] VF Kernel(float weight, int j) const {
+    const F d;
+    const VF column = hn::Iota(d, static_cast<float>(x + j * step));
+    const auto inside =
+        hn::And(hn::Ge(column, hn::Zero(d)), hn::Le(column, hn::Set(d, static_cast<float>(last))));
+    return hn::IfThenElseZero(inside, hn::Set(d, weight));
+  }
+};
+
+// The eighth root of the weight of geometry: (N_p . N_q)^8 (1 - distance off the plane / 8).
+template <typename Taps>
+HWY_INLINE VF GeometryRoot(const TapRow& row, const Taps& taps, int j, VF along_row,
+                           const Tangents& at) {
+  const F d;
+  const VF along = hn::MulAdd(at.x, hn::Set(d, static_cast<float>(j * taps.step)), along_row);
+  const VF off = hn::Abs(hn::MulSub(along, taps.Load(row.depth, j), at.distance));
+  const VF decay = hn::NegMulAdd(off, at.scale, hn::Set(d, 1.0f));
+  VF cosine = hn::Mul(at.normal[0], taps.Load(row.normal[0], j));
+  cosine = hn::MulAdd(at.normal[1], taps.Load(row.normal[1], j), cosine);
+  cosine = hn::MulAdd(at.normal[2], taps.Load(row.normal[2], j), cosine);
   // Sky has infinite depth and so NaN or -inf here: the comparison fails. So do normals that are no
   // unit vectors, whose 64th power would be Inf.
   const auto valid =
       hn::And(hn::Gt(decay, hn::Zero(d)),
               hn::And(hn::Gt(cosine, hn::Zero(d)), hn::Le(cosine, hn::Set(d, kLargestCosine))));
-  // (1 - x/8)^8 and (N . N)^64 share their squarings.
   for (int s = 0; s < 3; ++s) cosine = hn::Mul(cosine, cosine);
-  VF w = hn::Mul(cosine, decay);
-  for (int s = 0; s < 3; ++s) w = hn::Mul(w, w);
-  return hn::IfThenElseZero(valid, w);
+  return hn::IfThenElseZero(valid, hn::Mul(cosine, decay));
 }
 
-// Adds those taps to the center with weight w.
-template <typename Load>
-HWY_INLINE void AddTap(const TapRow& row, VF w, Load load, Center& at) {
-  for (int c = 0; c < 3; ++c) at.sum[c] = hn::MulAdd(w, load(row.color[c]), at.sum[c]);
-  at.weight = hn::Add(at.weight, w);
-  at.variance = hn::MulAdd(hn::Mul(w, w), load(row.variance), at.variance);
-}
-
-// A tap row for the pixels x .. x + lanes, of which some taps lie outside the image: kernel 0
-// there.
-template <int kRadius, bool kLight>
-void AddEdgeRow(const AtrousPass& pass, const TapRow& row, int x, Center& at) {
+// Adds taps that weigh as much as the eighth power of `root`, and of what light makes of it.
+template <typename By, typename Taps>
+HWY_INLINE void AddTap(const TapRow& row, const Taps& taps, int j, VF root, VF kernel,
+                       const Light& at, Sums& sums) {
   const F d;
-  const VF along = AlongRow(row, at);
-  const int lanes = static_cast<int>(hn::Lanes(d)), last = pass.variance.width() - 1;
-  alignas(64) float values[64];
-  for (int j = -kRadius; j <= kRadius; ++j) {
-    if (j == 0 && row.dy == 0) continue;
-    const int first = x + j * pass.step;
-    const auto load = [&](const float* source) {
-      for (int l = 0; l < lanes; ++l) values[l] = source[std::clamp(first + l, 0, last)];
-      return hn::Load(d, values);
-    };
-    const VF column = hn::Iota(d, static_cast<float>(first));
-    const auto inside =
-        hn::And(hn::Ge(column, hn::Zero(d)), hn::Le(column, hn::Set(d, static_cast<float>(last))));
-    const VF kernel = hn::IfThenElseZero(inside, hn::Set(d, row.kernel[j + kRadius]));
-    AddTap(row, hn::Mul(kernel, TapWeight<kLight>(row, column, along, load, at)), load, at);
+  const VF color[3] = {taps.Load(row.color[0], j), taps.Load(row.color[1], j),
+                       taps.Load(row.color[2], j)};
+  if constexpr (By::kLight) {
+    const VF off = hn::Abs(hn::Sub(Luminance(color[0], color[1], color[2]), at.luminance));
+    const VF decay = hn::NegMulAdd(off, at.scale, hn::Set(d, 1.0f));
+    const VF kept = hn::IfThenElseZero(hn::Gt(decay, hn::Zero(d)), decay);
+    root = By::kGeometry ? hn::Mul(root, kept) : kept;
   }
-}
-
-// All weights first: what weights and sums need does not fit 16 registers at once.
-template <int kRadius, bool kLight>
-HWY_INLINE void AddRow(const TapRow& row, int step, int x, Center& at) {
-  const F d;
-  const VF along = AlongRow(row, at);
-  const auto loader = [&](int j) {
-    return [first = x + j * step](const float* source) { return hn::LoadU(F(), source + first); };
-  };
-  VF weight[2 * kRadius + 1];
-  for (int j = -kRadius; j <= kRadius; ++j) {
-    if (j == 0 && row.dy == 0) continue;
-    const VF column = hn::Iota(d, static_cast<float>(x + j * step));
-    weight[j + kRadius] = hn::Mul(hn::Set(d, row.kernel[j + kRadius]),
-                                  TapWeight<kLight>(row, column, along, loader(j), at));
+  VF w = kernel;
+  if constexpr (By::kLight || By::kGeometry) {
+    for (int s = 0; s < 3; ++s) root = hn::Mul(root, root);
+    w = hn::Mul(kernel, root);
   }
-  for (int j = -kRadius; j <= kRadius; ++j) {
-    if (j == 0 && row.dy == 0) continue;
-    AddTap(row, weight[j + kRadius], loader(j), at);
-  }
+  for (int c = 0; c < 3; ++c) sums.color[c] = hn::MulAdd(w, color[c], sums.color[c]);
+  sums.weight = hn::Add(sums.weight, w);
+  sums.variance = hn::MulAdd(hn::Mul(w, w), taps.Load(row.variance, j), sums.variance);
 }
 
 // Writes the lanes whose pixels show a surface; the others keep their value. Lanes beyond the row
 // write its padding.
-HWY_INLINE void StoreCenter(const AtrousPass& pass, const Center& at, int x, int y) {
+HWY_INLINE void StoreCenter(const AtrousPass& pass, const Sums& sums, int x, int y) {
   const F d;
   const hn::RebindToUnsigned<F> du;
   const auto id = hn::LoadU(du, pass.guides.surface.id.row(y) + x);
   const auto surface = hn::RebindMask(d, hn::Ne(id, hn::Zero(du)));
-  const VF scale = hn::Div(hn::Set(d, 1.0f), at.weight);
+  const VF scale = hn::Div(hn::Set(d, 1.0f), sums.weight);
   const auto store = [&](VF value, const Plane<float>& from, Plane<float>& to) {
     hn::StoreU(hn::IfThenElse(surface, value, hn::LoadU(d, from.row(y) + x)), d, to.row(y) + x);
   };
   for (std::size_t c = 0; c < 3; ++c) {
-    store(hn::Mul(at.sum[c], scale), pass.color[c], pass.out_color[c]);
+    store(hn::Mul(sums.color[c], scale), pass.color[c], pass.out_color[c]);
   }
-  store(hn::Mul(at.variance, hn::Mul(scale, scale)), pass.variance, pass.out_variance);
+  store(hn::Mul(sums.variance, hn::Mul(scale, scale)), pass.variance, pass.out_variance);
 }
 
 // The rows of taps inside the image. Returns how many.
@@ -256,27 +264,65 @@ int FindRows(const AtrousPass& pass, int y, TapRow (&rows)[2 * kRadius + 1]) {
   return count;
 }
 
+// One vector of output pixels. All of geometry first: what it needs and what light and sums need
+// does not fit 16 registers at once.
+template <int kRadius, typename By, typename Taps>
+HWY_INLINE void FilterVector(const AtrousPass& pass, std::span<const TapRow> rows, const Taps& taps,
+                             int y, VF smooth_variance) {
+  const F d;
+  constexpr int kSide = 2 * kRadius + 1;
+  VF root[kSide][kSide];
+  if constexpr (By::kGeometry) {
+    const Tangents planes = LoadTangents(pass, taps.x, y);
+    const VF column = hn::Iota(d, static_cast<float>(taps.x));
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      const VF line = hn::Set(d, static_cast<float>(rows[r].line));
+      const VF along = hn::MulAdd(planes.x, column, hn::MulAdd(planes.y, line, planes.c));
+      for (int j = -kRadius; j <= kRadius; ++j) {
+        root[r][j + kRadius] = GeometryRoot(rows[r], taps, j, along, planes);
+      }
+    }
+  }
+  Light light;
+  if constexpr (By::kLight) light = LoadLight(pass, taps.x, y, smooth_variance);
+  Sums sums = LoadCenter(pass, taps.x, y);
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    for (int j = -kRadius; j <= kRadius; ++j) {
+      if (j == 0 && rows[r].dy == 0) continue;
+      AddTap<By>(rows[r], taps, j, root[r][j + kRadius],
+                 taps.Kernel(rows[r].kernel[j + kRadius], j), light, sums);
+    }
+  }
+  StoreCenter(pass, sums, taps.x, y);
+}
+
 template <int kRadius, bool kLight>
 void FilterTile(const AtrousPass& pass, const Tile& tile) {
+  using Full = Weighing<true, kLight>;
+  using Planar = Weighing<false, kLight>;
   const F d;
   const int lanes = static_cast<int>(hn::Lanes(d)), reach = kRadius * pass.step;
+  constexpr int kSide = PlanarBlocks::kSide;
+  const int margin = (reach + kSide - 1) / kSide;
   const Extent extent = pass.variance.extent();
   alignas(64) Line smooth_variance = {};
   for (int y = tile.y0; y < tile.y1; ++y) {
     if (kLight) SmoothVariance(pass.variance, tile.x0, tile.x1 - tile.x0, y, smooth_variance);
-    TapRow rows[2 * kRadius + 1];
-    const int used = FindRows<kRadius>(pass, y, rows);
+    TapRow found[2 * kRadius + 1];
+    const std::span<const TapRow> rows(found,
+                                       static_cast<std::size_t>(FindRows<kRadius>(pass, y, found)));
+    const std::uint8_t* margins = pass.planar.margins(y / kSide);
     for (int x = tile.x0; x < tile.x1; x += lanes) {
-      Center at = LoadCenter<kLight>(pass, x, y, hn::Load(d, smooth_variance + (x - tile.x0)));
-      const bool inside = x - reach >= 0 && x + lanes + reach <= extent.width;
-      for (int r = 0; r < used; ++r) {
-        if (inside) {
-          AddRow<kRadius, kLight>(rows[r], pass.step, x, at);
-        } else {
-          AddEdgeRow<kRadius, kLight>(pass, rows[r], x, at);
-        }
+      const VF variance = hn::Load(d, smooth_variance + (x - tile.x0));
+      const int last = std::min(x + lanes, extent.width) - 1;
+      if (x - reach < 0 || x + lanes + reach > extent.width) {
+        FilterVector<kRadius, Full>(pass, rows, EdgeTaps{x, pass.step, extent.width - 1}, y,
+                                    variance);
+      } else if (std::min(margins[x / kSide], margins[last / kSide]) >= margin) {
+        FilterVector<kRadius, Planar>(pass, rows, InnerTaps{x, pass.step}, y, variance);
+      } else {
+        FilterVector<kRadius, Full>(pass, rows, InnerTaps{x, pass.step}, y, variance);
       }
-      StoreCenter(pass, at, x, y);
     }
   }
 }

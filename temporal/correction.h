@@ -11,8 +11,9 @@ namespace eigenlight {
 struct CorrectionOptions {
   /// [0, 1000] variances of the smoothed residual that count as chance.
   float significance = 10.0f;
-  int passes = 5;     ///< [1, 6] of the a-trous filter over cells that smooths the residual
-  bool gated = true;  ///< filter only where light changes; else everywhere
+  int passes = 5;           ///< [1, 6] of the a-trous filter over cells that smooths the residual
+  bool gated = true;        ///< filter only where light changes; else everywhere
+  bool skip_planar = true;  ///< as in AtrousOptions
 
   void validate() const;  ///< throws std::invalid_argument naming the field
 };

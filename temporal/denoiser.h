@@ -42,6 +42,7 @@ struct FrameReport {
   std::int64_t skipped_warp = 0;        ///< still: no taps, no copy
   std::int64_t skipped_surface = 0;     ///< pixels in tiles without any surface
   std::int64_t skipped_filter = 0;      ///< pixels already quiet enough for the spatial passes
+  std::int64_t skipped_geometry = 0;    ///< pixels in one plane with all taps of a spatial pass
   std::int64_t skipped_guided = 0;      ///< pixels in tiles without young pixels
   std::int64_t skipped_correction = 0;  ///< pixels around which no light changed unforeseen
 

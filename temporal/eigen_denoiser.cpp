@@ -304,6 +304,7 @@ void EigenDenoiser::filter() {
   report_.skipped_filter = options_.filter
                                ? atrous_.process(frame_, options_.quiet, output_, output_variance_)
                                : report_.surface_pixels;
+  report_.skipped_geometry = options_.filter ? atrous_.planar_pixels() : 0;
 }
 
 // Young pixels lean on what their surroundings say of such a surface (Bauszat 2011). The share that

@@ -34,6 +34,10 @@ constexpr std::array kSwitches{
            [](EigenOptions& options, int&) { options.skip_empty = false; }},
     Switch{{"skip-quiet", "a-trous passes also where there is little left to filter"},
            [](EigenOptions& options, int&) { options.quiet = 0.0f; }},
+    Switch{{"skip-planar", "a-trous passes weigh geometry also where all taps lie in one plane"},
+           [](EigenOptions& options, int&) {
+             options.atrous.skip_planar = options.correction.skip_planar = false;
+           }},
     Switch{{"skip-steady", "the correction filters also where no light changes"},
            [](EigenOptions& options, int&) { options.correction.gated = false; }},
 };

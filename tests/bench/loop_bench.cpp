@@ -26,11 +26,11 @@ void loop_stages(benchmark::State& state) {
   for (auto& [name, times] : stages) state.counters[name] = median(std::move(times));
 }
 
-void at_default_bases(benchmark::internal::Benchmark* bench) {
+void of_three_and_five_bases(benchmark::internal::Benchmark* bench) {
   add_sweep(bench, {.bases = {3, 5}});
 }
 
-BENCHMARK(loop_stages)->Apply(at_default_bases);
+BENCHMARK(loop_stages)->Apply(of_three_and_five_bases);
 
 }  // namespace
 }  // namespace eigenlight

@@ -79,16 +79,14 @@ inline double atrous_weight(const Frame& guides, const AtrousOptions& options,
   if (!(depth > 0.0)) return 0.0;
   const double plane = std::abs(
       glm::dot(normal, detail::guide_position(guides, q) - detail::guide_position(guides, p)));
-  const auto weight = [&](double exponent) {
-    return std::pow(cosine, 64) * std::pow(std::max(0.0, 1.0 - exponent / 8.0), 8);
-  };
-  const double off_plane = plane / (options.plane_distance * depth);
-  if (std::isinf(options.luminance_sigmas)) return weight(off_plane);
+  const auto decay = [](double x) { return std::pow(std::max(0.0, 1.0 - x / 8.0), 8); };
+  const double geometry = std::pow(cosine, 64) * decay(plane / (options.plane_distance * depth));
+  if (std::isinf(options.luminance_sigmas)) return geometry;
   const double own = image.luminance(p.x, p.y);
   const double tolerance =
       options.luminance_sigmas * detail::smooth_sigma(image, p) + 1e-4 * std::abs(own);
   const double light = std::abs(image.luminance(q.x, q.y) - own);
-  return weight(off_plane + (light > 0.0 ? light / tolerance : 0.0));
+  return geometry * (light > 0.0 ? decay(light / tolerance) : 1.0);
 }
 
 inline AtrousImage atrous_pass(const Frame& guides, const AtrousOptions& options,

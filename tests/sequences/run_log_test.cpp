@@ -25,6 +25,7 @@ FrameReport report_of(int frame) {
   report.extra_samples = 40;
   report.mean_rank = 1.5;
   report.skipped_filter = 17;
+  report.skipped_geometry = 19;
   report.non_finite_pixels = 2;
   report[Stage::kSource] = {10.0, 19.0};
   report[Stage::kFilter] = {3.0, 5.0};
@@ -47,6 +48,7 @@ TEST(RunLog, WritesALineForEachFrame) {
   EXPECT_EQ(line["new_share"], 0.25);
   EXPECT_EQ(line["rank"], 1.5);
   EXPECT_EQ(line["skipped"]["filter"], 17);
+  EXPECT_EQ(line["skipped"]["geometry"], 19);
   EXPECT_EQ(line["non_finite_pixels"], 2);
   EXPECT_EQ(line["stages"]["source"]["cpu_ms"], 19.0);
   EXPECT_EQ(line["stages"]["write"]["wall_ms"], 1.5);

@@ -10,6 +10,7 @@
 #include "tests/support/extents.h"
 #include "tests/support/random_frames.h"
 #include "tests/support/targets.h"
+#include "tests/support/walls.h"
 
 namespace eigenlight {
 namespace {
@@ -51,6 +52,12 @@ struct Scene {
   Plane<float> variance;
 };
 
+// Passes that need a margin of one block, and of two; with and without light.
+const std::vector<AtrousOptions> kPlanarCases{
+    {.passes = 4, .radius = 1, .luminance_sigmas = 5.0f},
+    {.passes = 4, .radius = 2, .luminance_sigmas = 2.0f},
+    {.passes = 6, .radius = 1, .luminance_sigmas = std::numeric_limits<float>::infinity()}};
+
 void expect_agreement(Extent extent, const AtrousOptions& options) {
   const Scene before(extent);
   reference::AtrousImage twin(before.color, before.variance);
@@ -78,6 +85,43 @@ TEST(Atrous, AgreesWithTheTwinOnEveryTarget) {
   for (const Extent extent : kSweepExtents) {
     expect_agreement(extent, {.passes = 3});
     expect_agreement(extent, {.passes = 3, .radius = 1});
+  }
+}
+
+// Where all taps lie in one plane, weights of geometry are taken to be 1.
+TEST(Atrous, AgreesWithTheTwinOnWallsOnEveryTarget) {
+  for (const Extent extent : kSweepExtents) {
+    for (const AtrousOptions& options : kPlanarCases) {
+      Scene before(extent);
+      before.guides = make_walls(extent, extent.width / 2);
+      reference::AtrousImage twin(before.color, before.variance);
+      for (int i = 0; i < options.passes; ++i) {
+        twin = reference::atrous_pass(before.guides, options, twin, 1 << i);
+      }
+      for_each_target([&] {
+        Scene after(extent);
+        after.guides = make_walls(extent, extent.width / 2);
+        after.run(options);
+        for (int y = 0; y < extent.height; ++y) {
+          for (int x = 0; x < extent.width; ++x) {
+            const std::size_t at = twin.index(x, y);
+            ASSERT_NEAR(after.color[0](x, y), twin.values[0][at], 2e-4) << x << ", " << y;
+            ASSERT_NEAR(after.variance(x, y), twin.values[3][at], 1e-3 * twin.values[3][at]);
+          }
+        }
+      });
+    }
+  }
+}
+
+TEST(Atrous, CountsPixelsThatLieInOnePlaneWithTheirTaps) {
+  const Extent extent{128, 48};
+  Scene scene(extent);
+  scene.guides = make_walls(extent, 64);
+  for (const bool skip : {true, false}) {
+    Atrous atrous(extent, {.skip_planar = skip});
+    atrous.process(scene.guides, 0.0f, scene.color, scene.variance);
+    EXPECT_EQ(atrous.planar_pixels(), skip ? 14 * 8 * 48 : 0);
   }
 }
 

@@ -130,6 +130,24 @@ TEST(EigenDenoiser, SkipsTheWarpOfStillFramesAndLosesNothing) {
   });
 }
 
+// The source's wall is a plane: no tap of its filter needs to look at geometry.
+TEST(EigenDenoiser, WeighsNoGeometryInPlanesAndLosesNothing) {
+  const AnalyticOptions options{.extent = {65, 17}, .frames = 4};
+  EigenOptions parts = without_resampling();
+  std::vector<Planes<3>> skipped;
+  run(options, parts, [&](const Planes<3>& out, const EigenDenoiser& d, const AnalyticSource&) {
+    skipped.push_back({out[0].clone(), out[1].clone(), out[2].clone()});
+    EXPECT_EQ(d.report().skipped_geometry, 65 * 17);
+  });
+  parts.atrous.skip_planar = parts.correction.skip_planar = false;
+  std::size_t n = 0;
+  run(options, parts, [&](const Planes<3>& out, const EigenDenoiser& d, const AnalyticSource&) {
+    EXPECT_EQ(d.report().skipped_geometry, 0);
+    EXPECT_TRUE(planes_near(out, skipped[n++], {1e-4, 0.0}));
+  });
+  EXPECT_EQ(n, 4u);
+}
+
 TEST(EigenDenoiser, FollowsASlidingCameraAndKeepsItsHistory) {
   AnalyticOptions options{.extent = {96, 64}, .frames = 24};
   options.slide = {1.0f, 0.0f};  // whole pixels: nothing is blurred by the warp

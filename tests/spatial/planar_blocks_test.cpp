@@ -1,0 +1,131 @@
+#include "spatial/planar_blocks.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "tests/support/extents.h"
+#include "tests/support/targets.h"
+#include "tests/support/walls.h"
+
+namespace eigenlight {
+namespace {
+
+constexpr float kTolerance = 2e-5f;
+constexpr Extent kSmall{64, 48};  // 8 x 6 blocks, 1 x 3 tiles of 64 x 16
+constexpr int kNoEdge = 1 << 20;
+
+// One digit for each block of a row of blocks.
+std::string margins(const PlanarBlocks& blocks, int row, int columns = 8) {
+  std::string digits;
+  for (int i = 0; i < columns; ++i) digits += static_cast<char>('0' + blocks.margins(row)[i]);
+  return digits;
+}
+
+PlanarBlocks find(const Frame& frame) {
+  PlanarBlocks blocks(frame.extent(), kTolerance);
+  const auto tiles = static_cast<std::size_t>(stage_tiles(frame.extent()).count());
+  blocks.find(frame, std::vector<std::uint8_t>(tiles, 1));
+  return blocks;
+}
+
+TEST(PlanarBlocks, AWallIsPlanarEverywhereOnEveryTarget) {
+  for (const Extent extent : kSweepExtents) {
+    const Frame frame = make_walls(extent, kNoEdge);
+    for_each_target([&] {
+      const PlanarBlocks blocks = find(frame);
+      EXPECT_EQ(blocks.pixels(), static_cast<std::int64_t>(extent.pixels()));
+      EXPECT_EQ(blocks.margins((extent.height - 1) / 8)[(extent.width - 1) / 8], 2);
+    });
+  }
+}
+
+TEST(PlanarBlocks, AnEdgeEndsThePlaneOnBothSides) {
+  EXPECT_EQ(margins(find(make_walls(kSmall, 32)), 2), "22100122");
+  EXPECT_EQ(margins(find(make_walls(kSmall, 33)), 2), "22100012");  // the fifth block has both
+}
+
+// What one pixel of the middle of the image does to the row of blocks it is in.
+class PlanarBlocksPixel : public ::testing::Test {
+ protected:
+  void expect_hole() {
+    for_each_target([&] {
+      const PlanarBlocks blocks = find(frame_);
+      EXPECT_EQ(margins(blocks, 2), "21000122");
+      EXPECT_EQ(margins(blocks, 5), "22222222");
+      EXPECT_EQ(margins(blocks, 4), "21111122");
+      EXPECT_EQ(blocks.pixels(), 64 * 48 - 9 * 64);
+    });
+  }
+  static constexpr int kX = 30, kY = 18;
+  Frame frame_ = make_walls(kSmall, kNoEdge);
+};
+
+TEST_F(PlanarBlocksPixel, Sky) {
+  open_to_sky(frame_, kX, kY);
+  expect_hole();
+}
+
+TEST_F(PlanarBlocksPixel, NoObject) {
+  frame_.surface.id(kX, kY) = 0;
+  expect_hole();
+}
+
+TEST_F(PlanarBlocksPixel, OffThePlane) {
+  frame_.surface.depth(kX, kY) *= 1.0001f;
+  expect_hole();
+}
+
+TEST_F(PlanarBlocksPixel, OtherNormal) {
+  frame_.surface.normal[1](kX, kY) += 0.002f;
+  frame_.surface.normal[2](kX, kY) -= 0.002f;
+  expect_hole();
+}
+
+TEST_F(PlanarBlocksPixel, NoUnitNormal) {
+  for (auto& plane : frame_.surface.normal) plane(kX, kY) *= 1.0001f;
+  expect_hole();
+}
+
+TEST_F(PlanarBlocksPixel, FirstOfItsBlockIsNaN) {
+  frame_.surface.normal[0](24, 16) = std::numeric_limits<float>::quiet_NaN();
+  expect_hole();
+}
+
+TEST(PlanarBlocks, DepthsWithinTheToleranceAreOnePlane) {
+  Frame frame = make_walls(kSmall, kNoEdge);
+  frame.surface.depth(30, 18) *= 1.00001f;
+  EXPECT_EQ(find(frame).pixels(), 64 * 48);
+}
+
+// Parallel planes, each of which a block fills, are no plane.
+TEST(PlanarBlocks, NeighborsMustLieInTheSamePlane) {
+  Frame frame = make_walls(kSmall, kNoEdge);
+  for (int y = 16; y < 24; ++y) {
+    for (int x = 24; x < 32; ++x) frame.surface.depth(x, y) *= 1.01f;
+  }
+  EXPECT_EQ(margins(find(frame), 2), "21000122");
+}
+
+TEST(PlanarBlocks, TilesThatAreNotChosenAreNotPlanar) {
+  const Frame frame = make_walls(kSmall, kNoEdge);
+  PlanarBlocks blocks(kSmall, kTolerance);
+  blocks.find(frame, std::vector<std::uint8_t>{1, 1, 0});
+  for (const auto& [row, expected] : {std::pair{0, '2'}, {1, '2'}, {2, '1'}, {3, '0'}, {4, '0'}}) {
+    EXPECT_EQ(margins(blocks, row), std::string(8, expected)) << row;
+  }
+  blocks.clear();
+  EXPECT_EQ(blocks.pixels(), 0);
+}
+
+TEST(PlanarBlocks, RefusesOtherExtentsAndTolerances) {
+  const Frame frame = make_walls(kSmall, kNoEdge);
+  PlanarBlocks other({65, 48}, kTolerance), same(kSmall, kTolerance);
+  EXPECT_THROW(other.find(frame, std::vector<std::uint8_t>(6, 1)), std::invalid_argument);
+  EXPECT_THROW(same.find(frame, std::vector<std::uint8_t>(2, 1)), std::invalid_argument);
+  EXPECT_THROW(PlanarBlocks(kSmall, 0.0f), std::invalid_argument);
+  EXPECT_THROW(PlanarBlocks(kSmall, 1.5f), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace eigenlight
