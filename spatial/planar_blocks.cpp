@@ -1,15 +1,13 @@
 #include "spatial/planar_blocks.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "frame/check.h"
+#include "frame/neighbors.h"
 #include "spatial/planar_blocks_kernel.h"
 
 namespace eigenlight {
 namespace {
-
-int blocks_across(int pixels) { return (pixels + PlanarBlocks::kSide - 1) / PlanarBlocks::kSide; }
 
 bool holds(const PlanarBlocks::Block& plane, const PlanarBlocks::Block& other, float tolerance) {
   return other.is_planar && std::abs(1.0f - glm::dot(plane.normal, other.normal)) <= kPlanarTurn &&
@@ -19,12 +17,10 @@ bool holds(const PlanarBlocks::Block& plane, const PlanarBlocks::Block& other, f
 }  // namespace
 
 PlanarBlocks::PlanarBlocks(Extent extent, float tolerance)
-    : extent_(extent),
+    : grid_(extent, kSide, kSide),
       tiles_(stage_tiles(extent)),
       tolerance_(tolerance),
-      columns_(blocks_across(extent.width)),
-      rows_(blocks_across(extent.height)),
-      blocks_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_)),
+      blocks_(static_cast<std::size_t>(grid_.count())),
       near_(blocks_.size()),
       margins_(blocks_.size()) {
   EL_CHECK(tolerance > 0.0f && tolerance <= 1.0f, "tolerance {}: expected (0, 1] of the depth",
@@ -32,19 +28,19 @@ PlanarBlocks::PlanarBlocks(Extent extent, float tolerance)
 }
 
 void PlanarBlocks::find(const Frame& guides, std::span<const std::uint8_t> chosen) {
-  EL_CHECK(guides.extent() == extent_, "planar blocks made for {}x{}: got {}x{}", extent_.width,
-           extent_.height, guides.extent().width, guides.extent().height);
+  const Extent extent = grid_.extent();
+  EL_CHECK(guides.extent() == extent, "planar blocks made for {}x{}: got {}x{}", extent.width,
+           extent.height, guides.extent().width, guides.extent().height);
   EL_CHECK(chosen.size() == static_cast<std::size_t>(tiles_.count()),
            "{} chosen flags for {} tiles", chosen.size(), tiles_.count());
   for_each_tile(tiles_, [&](const Tile& tile) {
     for (int y = tile.y0; y < tile.y1; y += kSide) {
-      Block* blocks = blocks_.data() +
-                      static_cast<std::size_t>(y / kSide) * static_cast<std::size_t>(columns_) +
-                      tile.x0 / kSide;
+      const int first = y / kSide * grid_.columns() + tile.x0 / kSide;
+      Block* blocks = blocks_.data() + first;
       if (chosen[static_cast<std::size_t>(tile.index)] == 0) {
-        std::fill_n(blocks, blocks_across(tile.x1 - tile.x0), Block{});
+        std::fill_n(blocks, (tile.x1 - tile.x0 + kSide - 1) / kSide, Block{});
       } else {
-        find_planes(guides, tolerance_, {tile.x0, y, tile.x1, std::min(y + kSide, tile.y1), 0},
+        find_planes(guides, tolerance_, {tile.x0, y, tile.x1, std::min(y + kSide, tile.y1), first},
                     blocks);
       }
     }
@@ -54,54 +50,37 @@ void PlanarBlocks::find(const Frame& guides, std::span<const std::uint8_t> chose
 
 void PlanarBlocks::clear() { std::fill(margins_.begin(), margins_.end(), std::uint8_t{0}); }
 
-bool PlanarBlocks::lies_in_plane_of_neighbors(int column, int row) const {
-  const auto at = [&](int x, int y) -> const Block& {
-    return blocks_[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) +
-                   static_cast<std::size_t>(x)];
-  };
-  const Block& own = at(column, row);
+bool PlanarBlocks::lies_in_plane_of_neighbors(int index) const {
+  const Block& own = blocks_[static_cast<std::size_t>(index)];
   if (!own.is_planar) return false;
-  for (int y = std::max(row - 1, 0); y <= std::min(row + 1, rows_ - 1); ++y) {
-    for (int x = std::max(column - 1, 0); x <= std::min(column + 1, columns_ - 1); ++x) {
-      const Block& other = at(x, y);
-      if (!holds(own, other, tolerance_) || !holds(other, own, tolerance_)) return false;
-    }
-  }
-  return true;
+  bool all = true;
+  for_each_neighbor(grid_, index, [&](std::size_t i) {
+    all = all && holds(own, blocks_[i], tolerance_) && holds(blocks_[i], own, tolerance_);
+  });
+  return all;
 }
 
 void PlanarBlocks::find_margins() {
-  const auto index = [&](int x, int y) {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) +
-           static_cast<std::size_t>(x);
+  const auto for_each_block = [&](auto body) {
+    parallel_for(grid_.rows(), [&](int row) {
+      for (int i = row * grid_.columns(); i < (row + 1) * grid_.columns(); ++i) body(i);
+    });
   };
-  parallel_for(rows_, [&](int y) {
-    for (int x = 0; x < columns_; ++x) {
-      near_[index(x, y)] = lies_in_plane_of_neighbors(x, y) ? 1 : 0;
-    }
+  for_each_block([&](int index) {
+    near_[static_cast<std::size_t>(index)] = lies_in_plane_of_neighbors(index) ? 1 : 0;
   });
-  parallel_for(rows_, [&](int y) {
-    for (int x = 0; x < columns_; ++x) {
-      std::uint8_t margin = near_[index(x, y)];
-      bool all = margin != 0;
-      for (int j = std::max(y - 1, 0); all && j <= std::min(y + 1, rows_ - 1); ++j) {
-        for (int i = std::max(x - 1, 0); all && i <= std::min(x + 1, columns_ - 1); ++i) {
-          all = near_[index(i, j)] != 0;
-        }
-      }
-      margins_[index(x, y)] = static_cast<std::uint8_t>(margin + (all ? 1 : 0));
-    }
+  for_each_block([&](int index) {
+    std::uint8_t all = 1;
+    for_each_neighbor(grid_, index, [&](std::size_t i) { all &= near_[i]; });
+    std::uint8_t& margin = margins_[static_cast<std::size_t>(index)];
+    margin = static_cast<std::uint8_t>(near_[static_cast<std::size_t>(index)] + all);
   });
 }
 
 std::int64_t PlanarBlocks::pixels() const {
   std::int64_t sum = 0;
-  for (int row = 0; row < rows_; ++row) {
-    const int height = std::min(kSide, extent_.height - row * kSide);
-    for (int column = 0; column < columns_; ++column) {
-      if (margins(row)[column] == 0) continue;
-      sum += height * std::min(kSide, extent_.width - column * kSide);
-    }
+  for (int i = 0; i < grid_.count(); ++i) {
+    if (margins_[static_cast<std::size_t>(i)] > 0) sum += grid_.tile(i).pixels();
   }
   return sum;
 }

@@ -35,7 +35,8 @@ class PlanarBlocks {
   /// For each block of a row of blocks how many blocks around it, in all directions and as far as
   /// the image goes, lie in its plane: 0 to kMostMargin.
   [[nodiscard]] const std::uint8_t* margins(int row) const {
-    return margins_.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_);
+    return margins_.data() +
+           static_cast<std::size_t>(row) * static_cast<std::size_t>(grid_.columns());
   }
   /// Pixels in blocks with a margin of at least 1.
   [[nodiscard]] std::int64_t pixels() const;
@@ -50,15 +51,14 @@ class PlanarBlocks {
   };
 
  private:
-  [[nodiscard]] bool lies_in_plane_of_neighbors(int column, int row) const;
+  [[nodiscard]] bool lies_in_plane_of_neighbors(int index) const;
   void find_margins();
 
-  Extent extent_;
-  TileGrid tiles_;
+  TileGrid grid_;   // of blocks
+  TileGrid tiles_;  // of stage_tiles()
   float tolerance_;
-  int columns_, rows_;
   std::vector<Block> blocks_;
-  std::vector<std::uint8_t> near_, margins_;  // 1 where all eight neighbors lie in the plane
+  std::vector<std::uint8_t> near_, margins_;  // near: 1 where all neighbors lie in the plane
 };
 
 }  // namespace eigenlight

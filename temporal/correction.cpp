@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "frame/luminance.h"
+#include "frame/neighbors.h"
 #include "frame/strips.h"
 
 namespace eigenlight {
@@ -14,17 +15,6 @@ namespace {
 // steady light, where the correction would only cost time. A sun that sweeps through the atrium
 // makes a third.
 constexpr double kGateStart = 0.03, kGateRange = 0.04;
-
-// Calls body(neighbor) for a tile and the up to eight around it.
-template <typename Body>
-void for_each_neighbor(const TileGrid& grid, int index, Body body) {
-  const int column = index % grid.columns(), row = index / grid.columns();
-  for (int y = std::max(row - 1, 0); y <= std::min(row + 1, grid.rows() - 1); ++y) {
-    for (int x = std::max(column - 1, 0); x <= std::min(column + 1, grid.columns() - 1); ++x) {
-      body(static_cast<std::size_t>(y * grid.columns() + x));
-    }
-  }
-}
 
 }  // namespace
 
