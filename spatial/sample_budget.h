@@ -16,7 +16,7 @@ struct BudgetOptions {
   /// [0, 255] samples added at one pixel: Chen 2012, Fig. 6, takes 120 at newly unoccluded pixels.
   int most_per_pixel = 120;
   /// [1, 255] frames' worth of samples after which a pixel is left alone.
-  float enough = 12.0f;
+  float enough = 18.0f;
 
   void validate() const;  ///< throws std::invalid_argument naming the field
 };
