@@ -7,7 +7,8 @@
 namespace eigenlight {
 
 /// Up to kSegment pixels of one row, planar: values[channel * K + k][i], and age[i].
-/// Room behind the last pixel is zero after load_rows, so kernels may run over whole vectors.
+/// After load_rows, what the last vector (Plane::kLine bytes) has behind the last pixel is zero, so
+/// kernels may run over whole vectors.
 struct BasisRows {
   alignas(64) float values[3 * kMaxBases][kSegment];
   alignas(64) float age[kSegment];

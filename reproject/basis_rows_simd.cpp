@@ -1,5 +1,5 @@
+#include <algorithm>
 #include <cstdint>
-#include <cstring>
 
 #include "reproject/basis_rows.h"
 
@@ -139,11 +139,10 @@ void Save(const BasisRows& rows, const Tile& row, BasisField& field) {
 
 void LoadRows(const BasisField& field, const Tile& row, BasisRows& rows) {
   Load(field, row, rows);
-  const int count = row.x1 - row.x0;
-  if (count == kSegment) return;
-  const auto clear = [&](float* values) {
-    std::memset(values + count, 0, static_cast<std::size_t>(kSegment - count) * sizeof(float));
-  };
+  constexpr int kVector = static_cast<int>(Plane<float>::kLine / sizeof(float));
+  const int count = row.x1 - row.x0, whole = (count + kVector - 1) / kVector * kVector;
+  if (count == whole) return;
+  const auto clear = [&](float* values) { std::fill(values + count, values + whole, 0.0f); };
   for (int j = 0; j < 3 * field.bases(); ++j) clear(rows.values[j]);
   clear(rows.age);
 }

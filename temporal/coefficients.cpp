@@ -89,36 +89,6 @@ CoefficientField::CoefficientField(Extent extent, int bases)
       used_(bases),
       values_(static_cast<std::size_t>(grid_.count() * bases), 0.0f) {}
 
-void CoefficientField::row(const Tile& row, int k, float* out) const {
-  const int column = row.x0 / kCoefficientTile;
-  constexpr float kInverse = 1.0f / kCoefficientTile;
-
-  // Blend the two tile rows around y, for the tile's own column and its neighbors.
-  const float ty = (static_cast<float>(row.y0) + 0.5f) * kInverse - 0.5f;
-  const int y0 = std::clamp(static_cast<int>(std::floor(ty)), 0, grid_.rows() - 1);
-  const int y1 = std::min(y0 + 1, grid_.rows() - 1);
-  const float fy = std::clamp(ty - static_cast<float>(y0), 0.0f, 1.0f);
-  float blended[3];
-  for (int i = 0; i < 3; ++i) {
-    const int x = std::clamp(column + i - 1, 0, grid_.columns() - 1);
-    const float upper = tile(y0 * grid_.columns() + x)[static_cast<std::size_t>(k)];
-    const float lower = tile(y1 * grid_.columns() + x)[static_cast<std::size_t>(k)];
-    blended[i] = upper + fy * (lower - upper);
-  }
-
-  // Half of the way to the neighbor at the tile's edges, none in its middle.
-  const float own = (k == 0 ? 1.0f : 0.0f) + blended[1];
-  const float left = blended[0] - blended[1], right = blended[2] - blended[1];
-  const int begin = row.x0 - column * kCoefficientTile, end = row.x1 - column * kCoefficientTile;
-  const int middle = std::clamp(kCoefficientTile / 2, begin, end);
-  for (int i = begin; i < middle; ++i) {
-    out[i - begin] = own + (0.5f - (static_cast<float>(i) + 0.5f) * kInverse) * left;
-  }
-  for (int i = middle; i < end; ++i) {
-    out[i - begin] = own + ((static_cast<float>(i) + 0.5f) * kInverse - 0.5f) * right;
-  }
-}
-
 void solve_coefficients(std::span<const TileSums> sums, std::span<const double> expected,
                         const ShrinkOptions& options, CoefficientField& field) {
   const TileGrid& grid = field.grid();

@@ -20,6 +20,14 @@ struct ShrinkOptions {
   void validate() const;  ///< throws std::invalid_argument naming the field
 };
 
+/// Coefficients along a row of one tile: values[k][i] is c_k of its pixel i, meant for all pixels
+/// that a whole tile has.
+struct CoefficientRows {
+  alignas(64) float values[kMaxBases][kCoefficientTile];
+
+  const float* operator[](int k) const { return values[k]; }
+};
+
 /// Coefficients c_k of every tile, as offsets from the steady light (1, 0, ..., 0), and their
 /// smooth interpolation between tile centers.
 class CoefficientField {
@@ -39,9 +47,10 @@ class CoefficientField {
     return {values_.data() + static_cast<std::size_t>(index * bases_),
             static_cast<std::size_t>(bases_)};
   }
-  /// c_k (the steady 1 of k = 0 included) at the pixels [x0, x1) of row y0 of `row`, bilinear
-  /// between tile centers and constant beyond the outermost. `row` lies within one tile column.
-  void row(const Tile& row, int k, float* out) const;
+  /// c_0 to c_(count - 1) (the steady 1 of k = 0 included) along row y0 of the tile column that
+  /// starts at x0, bilinear between tile centers and constant beyond the outermost; count <=
+  /// bases().
+  void rows(const Tile& row, int count, CoefficientRows& out) const;
 
  private:
   TileGrid grid_;

@@ -158,13 +158,13 @@ void Correction::find_factor(const Tile& cells) {
 void Correction::weigh_cells(const Tile& cells) {
   const Extent extent = cells_.extent();
   constexpr int kStep = kCoefficientTile / 2;
-  float gate[kCoefficientTile];
+  CoefficientRows gate;
   std::int64_t corrected = 0;
   for (int y = cells.y0; y < cells.y1; ++y) {
     const int top = std::max(y - 1, 0), bottom = std::min(y + 1, extent.height - 1);
     for (int x0 = cells.x0; x0 < cells.x1; x0 += kStep) {
       const int x1 = std::min(x0 + kStep, cells.x1);
-      gate_.row({2 * x0, 2 * y, 2 * x1, 2 * y + 1, 0}, 0, gate);
+      gate_.rows({2 * x0, 2 * y, 2 * x1, 2 * y + 1, 0}, 1, gate);
       for (int x = x0; x < x1; ++x) {
         const int left = std::max(x - 1, 0), right = std::min(x + 1, extent.width - 1);
         float sum = 0.0f, known = 0.0f;
@@ -174,7 +174,7 @@ void Correction::weigh_cells(const Tile& cells) {
             known += cells_.count(i, j) > 0.0f ? 1.0f : 0.0f;
           }
         }
-        const float kept = gate[2 * (x - x0)] * sum / std::max(known, 1.0f);
+        const float kept = gate[0][2 * (x - x0)] * sum / std::max(known, 1.0f);
         if (kept > 0.5f) corrected += static_cast<std::int64_t>(cells_.count(x, y));
         for (auto& plane : cells_.mean) plane(x, y) *= kept;
       }

@@ -13,53 +13,62 @@ HWY_BEFORE_NAMESPACE();
 namespace eigenlight::HWY_NAMESPACE {
 namespace {
 
-using Line = float[kSegment];
+namespace hn = hwy::HWY_NAMESPACE;
+using F = hn::ScalableTag<float>;
+using VF = hn::Vec<F>;
 
 constexpr float kLargest = std::numeric_limits<float>::max();
 // Of the largest usable light; a gain may ask for more than float can hold.
 constexpr float kLargestVariance = kLargestLight * kLargestLight;
 
-// Plain loops over the pixels of a row: compiled once for each instruction set, they vectorize.
+// The variance of one frame, where the light is `gain` times what it was.
+VF FollowGain(VF variance, VF gain) {
+  const F d;
+  const VF half = hn::Set(d, 0.5f), one = hn::Set(d, 1.0f), two = hn::Set(d, 2.0f);
+  const VF small = hn::IfThenElse(hn::Lt(gain, half), hn::Mul(two, gain), one);
+  const VF beyond = hn::IfThenElse(hn::Gt(gain, two), hn::Mul(half, gain), small);
+  const VF scaled = hn::Mul(hn::Mul(beyond, variance), beyond);
+  const VF largest = hn::Set(d, kLargestVariance);
+  return hn::IfThenElse(hn::Lt(scaled, largest), scaled, largest);
+}
+
+void PredictVector(const BasisRows& rows, int bases, const CoefficientRows& coefficient, int rank,
+                   const Planes<3>& light, int x, int y, int i, const PredictOutputs& out) {
+  const F d;
+  const float weights[3] = {0.2126f, 0.7152f, 0.0722f};  // luminance, Rec. 709
+  VF residual = hn::Zero(d);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const float(*values)[kSegment] = rows.values + static_cast<int>(c) * bases;
+    VF sum = hn::Mul(hn::Load(d, coefficient[0] + i), hn::Load(d, values[0] + i));
+    for (int k = 1; k < rank; ++k) {
+      sum = hn::MulAdd(hn::Load(d, coefficient[k] + i), hn::Load(d, values[k] + i), sum);
+    }
+    hn::StoreU(sum, d, out.prediction[c].row(y) + x);
+    const VF off = hn::Sub(hn::LoadU(d, light[c].row(y) + x), sum);
+    residual = hn::MulAdd(hn::Set(d, weights[c]), off, residual);
+  }
+  const VF age = hn::Load(d, rows.age + i);
+  // False of NaN.
+  const auto confirmed = hn::And(hn::Gt(age, hn::Zero(d)),
+                                 hn::Le(hn::Abs(residual), hn::Set(d, kLargest)));
+  hn::StoreU(hn::IfThenElseZero(confirmed, residual), d, out.residual.row(y) + x);
+  hn::StoreU(hn::IfThenElseZero(confirmed, hn::Set(d, 1.0f)), d, out.confirmed.row(y) + x);
+  hn::StoreU(age, d, out.age.row(y) + x);
+  float* variance = out.variance.row(y) + x;
+  hn::StoreU(FollowGain(hn::LoadU(d, variance), hn::Load(d, coefficient[0] + i)), d, variance);
+}
+
 void PredictTile(const BasisField& bases, const CoefficientField& coefficients,
                  const Planes<3>& light, const Tile& tile, const PredictOutputs& out) {
-  const int count = tile.x1 - tile.x0, stride = bases.bases(), rank = coefficients.used();
+  const int lanes = static_cast<int>(hn::Lanes(F())), rank = coefficients.used();
   BasisRows rows;
-  alignas(64) Line coefficient[kMaxBases];
+  CoefficientRows coefficient;
   for (int y = tile.y0; y < tile.y1; ++y) {
     const Tile segment{tile.x0, y, tile.x1, y + 1, tile.index};
     load_rows(bases, segment, rows);
-    for (int k = 0; k < rank; ++k) coefficients.row(segment, k, coefficient[k]);
-
-    for (int c = 0; c < 3; ++c) {
-      float* p = out.prediction[static_cast<std::size_t>(c)].at(tile.x0, y);
-      const float* first = rows.values[c * stride];
-      for (int i = 0; i < count; ++i) p[i] = coefficient[0][i] * first[i];
-      for (int k = 1; k < rank; ++k) {
-        const float* value = rows.values[c * stride + k];
-        for (int i = 0; i < count; ++i) p[i] += coefficient[k][i] * value[i];
-      }
-    }
-
-    const float* u[3] = {light[0].at(tile.x0, y), light[1].at(tile.x0, y), light[2].at(tile.x0, y)};
-    const float* p[3] = {out.prediction[0].at(tile.x0, y), out.prediction[1].at(tile.x0, y),
-                         out.prediction[2].at(tile.x0, y)};
-    float* residual = out.residual.at(tile.x0, y);
-    float* known = out.confirmed.at(tile.x0, y);
-    float* age = out.age.at(tile.x0, y);
-    float* variance = out.variance.at(tile.x0, y);
-    for (int i = 0; i < count; ++i) {
-      const float r = 0.2126f * (u[0][i] - p[0][i]) + 0.7152f * (u[1][i] - p[1][i]) +
-                      0.0722f * (u[2][i] - p[2][i]);
-      const float size = r < 0.0f ? -r : r;
-      const bool confirmed = rows.age[i] > 0.0f && size <= kLargest;  // NaN fails
-      residual[i] = confirmed ? r : 0.0f;
-      known[i] = confirmed ? 1.0f : 0.0f;
-      age[i] = rows.age[i];
-      const float gain = coefficient[0][i];
-      const float small = gain < 0.5f ? 2.0f * gain : 1.0f;
-      const float beyond = gain > 2.0f ? 0.5f * gain : small;
-      const float scaled = beyond * variance[i] * beyond;
-      variance[i] = scaled < kLargestVariance ? scaled : kLargestVariance;
+    coefficients.rows(segment, rank, coefficient);
+    for (int i = 0; i < tile.x1 - tile.x0; i += lanes) {
+      PredictVector(rows, bases.bases(), coefficient, rank, light, tile.x0 + i, y, i, out);
     }
   }
 }
@@ -75,7 +84,7 @@ HWY_EXPORT(PredictTile);
 
 void predict_tile(const BasisField& bases, const CoefficientField& coefficients,
                   const Planes<3>& light, const Tile& tile, const PredictOutputs& out) {
-  EL_DCHECK(tile.x1 - tile.x0 <= kSegment);
+  EL_DCHECK(tile.x1 - tile.x0 <= kCoefficientTile);
   const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(PredictTile)(bases, coefficients, light, tile, out);
 }

@@ -1,3 +1,4 @@
+#include "frame/float_traps.h"
 #include "reproject/basis_rows.h"
 #include "temporal/update.h"
 
@@ -13,97 +14,96 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 using F = hn::ScalableTag<float>;
 using VF = hn::Vec<F>;
-using Line = float[kSegment];
+using MF = hn::Mask<F>;
 
-// Plain loops over the pixels of a row: compiled once for each instruction set, they vectorize.
 struct Row {
   BasisRows from, to;
-  alignas(64) Line coefficient[kMaxBases];  // c; c_0 is the gain
-  alignas(64) Line learning[kMaxBases];     // q
-  alignas(64) Line leverage;                // 1 / h
-  alignas(64) Line weight;                  // s / (n + h s); 0 without usable sample
-  alignas(64) Line keep;                    // 1 with history, else 0
-  alignas(64) Line step;                    // what q is multiplied with, of one channel
+  CoefficientRows coefficient;  // c; c_0 is the gain
+  CoefficientRows learning;     // q
 };
 
-void LoadRow(const UpdateInputs& in, const Tile& segment, Row& row) {
-  const int count = segment.x1 - segment.x0;
-  in.learning.row(segment, 0, row.learning[0]);
-  in.coefficients.row(segment, 0, row.coefficient[0]);
-  alignas(64) Line h;
-  for (int i = 0; i < count; ++i) h[i] = row.learning[0][i];
+// What a vector of pixels does with all of its channels.
+struct Step {
+  VF leverage;  // 1 / h
+  VF weight;    // s / (n + h s)
+  MF usable, known;
+};
+
+// Leaves the age in row.to.
+Step FindStep(const UpdateInputs& in, const Tile& segment, int i, Row& row) {
+  const F d;
+  const auto load = [&](const Plane<float>& plane) {
+    return hn::LoadU(d, plane.row(segment.y0) + segment.x0 + i);
+  };
+  const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+  VF h = hn::Load(d, row.learning[0] + i);
   for (int k = 1; k < in.active; ++k) {
-    in.learning.row(segment, k, row.learning[k]);
-    in.coefficients.row(segment, k, row.coefficient[k]);
-    for (int i = 0; i < count; ++i) h[i] += row.coefficient[k][i] * row.learning[k][i];
+    h = hn::MulAdd(hn::Load(d, row.coefficient[k] + i), hn::Load(d, row.learning[k] + i), h);
   }
-  const float* samples = in.samples.at(segment.x0, segment.y0);
-  const float* old_age = in.old_age.at(segment.x0, segment.y0);
-  const float* new_age = in.new_age.at(segment.x0, segment.y0);
-  for (int i = 0; i < count; ++i) {
-    // M is positive definite, so h >= 1 / M_00 = 1 at tile centers; interpolation may fall short.
-    const float leverage = h[i] > 1.0f ? h[i] : 1.0f;
-    const bool usable = samples[i] > 0.0f, known = old_age[i] > 0.0f;
-    const float history = known && new_age[i] > samples[i] ? new_age[i] - samples[i] : 0.0f;
-    row.leverage[i] = 1.0f / leverage;
-    row.weight[i] = usable ? samples[i] / (history + leverage * samples[i]) : 0.0f;
-    row.keep[i] = known ? 1.0f : 0.0f;
-    row.to.age[i] = usable || known ? new_age[i] : 0.0f;
-  }
+  // M is positive definite, so h >= 1 / M_00 = 1 at tile centers; interpolation may fall short.
+  h = hn::IfThenElse(hn::Gt(h, one), h, one);
+  const VF samples = load(in.samples), age = load(in.new_age);
+  Step step;
+  step.usable = hn::Gt(samples, zero);
+  step.known = hn::Gt(load(in.old_age), zero);
+  const VF history =
+      hn::IfThenElseZero(hn::And(step.known, hn::Gt(age, samples)), hn::Sub(age, samples));
+  const VF total = hn::IfThenElse(step.usable, hn::MulAdd(h, samples, history), one);
+  step.leverage = hn::Div(one, h);
+  step.weight = hn::IfThenElseZero(step.usable, hn::Div(samples, total));
+  hn::Store(hn::IfThenElseZero(hn::Or(step.usable, step.known), age), d, row.to.age + i);
+  return step;
 }
 
-// What q is multiplied with.
-void FindStep(const UpdateInputs& in, const Tile& segment, std::size_t channel, Row& row) {
-  const int count = segment.x1 - segment.x0;
-  const float* light = in.light[channel].at(segment.x0, segment.y0);
-  const float* prediction = in.prediction[channel].at(segment.x0, segment.y0);
-  for (int i = 0; i < count; ++i) {
-    const float r = light[i] - prediction[i];
-    row.step[i] = row.weight[i] > 0.0f ? row.weight[i] * r : 0.0f;
-  }
-  if (in.correction == nullptr || in.newborn > 0) return;
-  const float* correction = (*in.correction)[channel].at(segment.x0, segment.y0);
-  for (int i = 0; i < count; ++i) {
-    row.step[i] = row.keep[i] * correction[i] * row.leverage[i] + row.step[i];
-  }
-}
-
-void UpdateChannel(const UpdateInputs& in, const Tile& segment, std::size_t channel, int bases,
-                   Row& row, const UpdateOutputs& out) {
-  const int count = segment.x1 - segment.x0, room = out.bases.bases();
-  float* estimate = out.estimate[channel].at(segment.x0, segment.y0);
-  const float(*from)[kSegment] = row.from.values + static_cast<int>(channel) * bases;
-  float(*to)[kSegment] = row.to.values + static_cast<int>(channel) * room;
-  FindStep(in, segment, channel, row);
-  for (int i = 0; i < count; ++i) {
-    to[0][i] = row.coefficient[0][i] * from[0][i] * row.keep[i] + row.learning[0][i] * row.step[i];
-    estimate[i] = to[0][i];
-  }
+// One channel of a vector of pixels. Returns the estimate.
+VF UpdateBases(const UpdateInputs& in, const Step& step, VF residual, VF correction, int channel,
+               int i, const BasisField& from_field, const BasisField& to_field, Row& row) {
+  const F d;
+  const float(*from)[kSegment] = row.from.values + channel * from_field.bases();
+  float(*to)[kSegment] = row.to.values + channel * to_field.bases();
+  VF move = hn::IfThenElseZero(step.usable, hn::Mul(step.weight, residual));
+  if (in.newborn == 0) move = hn::MulAdd(correction, step.leverage, move);
+  const auto old = [&](int k) { return hn::IfThenElseZero(step.known, hn::Load(d, from[k] + i)); };
+  const auto q = [&](int k) { return hn::Load(d, row.learning[k] + i); };
+  const auto c = [&](int k) { return hn::Load(d, row.coefficient[k] + i); };
+  VF estimate = hn::MulAdd(q(0), move, hn::Mul(c(0), old(0)));
+  hn::Store(estimate, d, to[0] + i);
   for (int k = 1; k < in.active; ++k) {
-    for (int i = 0; i < count; ++i) {
-      to[k][i] = row.keep[i] * from[k][i] + row.learning[k][i] * row.step[i];
-      estimate[i] += row.coefficient[k][i] * to[k][i];
-    }
+    const VF value = hn::MulAdd(q(k), move, old(k));
+    hn::Store(value, d, to[k] + i);
+    estimate = hn::MulAdd(c(k), value, estimate);
   }
-  for (int k = in.active; k < room; ++k) {
-    for (int i = 0; i < count; ++i) to[k][i] = 0.0f;
-  }
-  if (in.newborn == 0 || in.correction == nullptr) return;
-  const float* correction = (*in.correction)[channel].at(segment.x0, segment.y0);
-  for (int i = 0; i < count; ++i) {
-    to[in.newborn][i] = row.keep[i] * correction[i];
-    estimate[i] += to[in.newborn][i];
-  }
+  for (int k = in.active; k < to_field.bases(); ++k) hn::Store(hn::Zero(d), d, to[k] + i);
+  if (in.newborn == 0) return estimate;
+  hn::Store(correction, d, to[in.newborn] + i);
+  return hn::Add(estimate, correction);
 }
 
 void UpdateTile(const UpdateInputs& in, const Tile& tile, const BasisField& from,
                 const UpdateOutputs& out) {
+  const F d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
   Row row;
   for (int y = tile.y0; y < tile.y1; ++y) {
     const Tile segment{tile.x0, y, tile.x1, y + 1, tile.index};
     load_rows(from, segment, row.from);
-    LoadRow(in, segment, row);
-    for (std::size_t c = 0; c < 3; ++c) UpdateChannel(in, segment, c, from.bases(), row, out);
+    in.coefficients.rows(segment, in.active, row.coefficient);
+    in.learning.rows(segment, in.active, row.learning);
+    for (int i = 0; i < tile.x1 - tile.x0; i += lanes) {
+      const Step step = FindStep(in, segment, i, row);
+      for (std::size_t c = 0; c < 3; ++c) {
+        const auto load = [&](const Planes<3>& planes) {
+          return hn::LoadU(d, planes[c].row(y) + tile.x0 + i);
+        };
+        const VF residual = hn::Sub(load(in.light), load(in.prediction));
+        const VF correction = in.correction == nullptr
+                                  ? hn::Zero(d)
+                                  : hn::IfThenElseZero(step.known, load(*in.correction));
+        const VF estimate = UpdateBases(in, step, residual, correction, static_cast<int>(c), i,
+                                        from, out.bases, row);
+        hn::StoreU(estimate, d, out.estimate[c].row(y) + tile.x0 + i);
+      }
+    }
     store_rows(row.to, segment, out.bases);
   }
 }
@@ -119,9 +119,10 @@ HWY_EXPORT(UpdateTile);
 
 void update_tile(const UpdateInputs& in, const Tile& tile, const BasisField& from,
                  const UpdateOutputs& out) {
-  EL_DCHECK(tile.x1 - tile.x0 <= kSegment);
+  EL_DCHECK(tile.x1 - tile.x0 <= kCoefficientTile);
   EL_DCHECK(in.active <= from.bases() && in.active <= out.bases.bases() &&
             in.newborn < out.bases.bases());
+  const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(UpdateTile)(in, tile, from, out);
 }
 

@@ -23,7 +23,8 @@ void expect_loaded(const BasisField& field, const Tile& row, const BasisRows& ro
       }
     }
   }
-  for (int i = row.x1 - row.x0; i < kSegment; ++i) {
+  constexpr int kVector = static_cast<int>(Plane<float>::kLine / sizeof(float));
+  for (int i = row.x1 - row.x0; i % kVector != 0; ++i) {
     ASSERT_EQ(rows.age[i], 0.0f);
     for (int j = 0; j < 3 * field.bases(); ++j) ASSERT_EQ(rows.values[j][i], 0.0f);
   }

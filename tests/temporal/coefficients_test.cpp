@@ -253,14 +253,14 @@ TEST(CoefficientField, InterpolatesAsTheTwinForAllExtents) {
       PixelRandom random(3, i, 0);
       for (float& delta : field.tile(i)) delta = random.between(-1.0f, 1.0f);
     }
-    float out[kCoefficientTile];
+    CoefficientRows out;
     for (int i = 0; i < field.grid().count(); ++i) {
       const Tile tile = field.grid().tile(i);
       for (int y = tile.y0; y < tile.y1; ++y) {
+        field.rows({tile.x0, y, tile.x1, y + 1, i}, 2, out);
         for (int k = 0; k < 2; ++k) {
-          field.row({tile.x0, y, tile.x1, y + 1, i}, k, out);
           for (int x = tile.x0; x < tile.x1; ++x) {
-            ASSERT_NEAR(out[x - tile.x0], reference::coefficient_at(field, x, y, k), 2e-6)
+            ASSERT_NEAR(out[k][x - tile.x0], reference::coefficient_at(field, x, y, k), 2e-6)
                 << x << ", " << y;
           }
         }
@@ -273,9 +273,10 @@ TEST(CoefficientField, HasNoStepWhereTilesMeet) {
   CoefficientField field({191, 107}, 1);
   for (int i = 0; i < field.grid().count(); ++i) field.tile(i)[0] = i % 2 == 0 ? 1.0f : -1.0f;
   const auto value = [&](int x, int y) {
-    float out = 0.0f;
-    field.row({x, y, x + 1, y + 1, 0}, 0, &out);
-    return out;
+    CoefficientRows out;
+    const int first = x / kCoefficientTile * kCoefficientTile;
+    field.rows({first, y, x + 1, y + 1, 0}, 1, out);
+    return out[0][x - first];
   };
   // Bilinear between centers 32 pixels and 2 apart: at most 2/32 a pixel along a row, and along a
   // column too.
