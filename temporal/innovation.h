@@ -37,6 +37,8 @@ struct InnovationOutputs {
 /// Without bias, or with N = 1, that is n + s. So it is at unconfirmed pixels: new ones start at
 /// age s, those without usable sample (s = 0) keep theirs. The variance of one frame is a running
 /// mean of v over min(new age / s, 16) frames: where history is dropped, so is its variance.
+///
+/// `tile` starts and ends at multiples of 16 pixels (vectors) or ends with the image.
 void innovation_tile(const InnovationInputs& in, const InnovationOptions& options, const Tile& tile,
                      const InnovationOutputs& out);
 

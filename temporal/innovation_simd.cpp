@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "frame/float_traps.h"
 #include "frame/strips.h"
 #include "temporal/innovation.h"
 
@@ -14,6 +15,7 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 using F = hn::ScalableTag<float>;
+using VF = hn::Vec<F>;
 
 constexpr int kRadius = 4;
 constexpr int kWindow = 2 * kRadius + 1;
@@ -78,43 +80,67 @@ void SumRow(const InnovationInputs& in, const Tile& tile, int y, Sums& sums) {
   SumNine(square, count, sums.square);
 }
 
-// New ages and variances of a row of pixels from their windows. Written without branches, so that
-// the loop becomes vectors.
+// What a pixel knows of its window, and its age in frames with this one.
+struct Found {
+  VF variance;  // of one frame
+  VF age;
+};
+
+// The innovation test. n: frames of history, s: this frame's samples, count >= 2.
+Found TestInnovation(const InnovationOptions& options, VF n, VF s, VF count, VF sum, VF square) {
+  const F d;
+  const VF one = hn::Set(d, 1.0f), zero = hn::Zero(d);
+  const VF inverse_count = hn::Div(one, count), mean = hn::Mul(sum, inverse_count);
+  const VF mean2 = hn::Mul(mean, mean);
+  const VF variance = hn::Max(hn::MulSub(square, inverse_count, mean2), zero);
+  const VF old = hn::Div(one, n);
+  const VF noise = hn::Mul(hn::Mul(variance, inverse_count), hn::Add(one, old));
+  VF history = hn::Mul(variance, old);
+  if (options.test) {
+    const VF bound = hn::Mul(hn::Set(d, options.threshold), noise);
+    history = hn::Add(history, hn::Max(hn::Sub(mean2, bound), zero));
+  }
+  // s / weight, with the weight of this frame history / total; without any noise s / (n + s).
+  const VF total = hn::Add(history, hn::Div(variance, s));
+  const auto noisy = hn::Gt(total, zero);
+  const VF age = hn::Div(hn::IfThenElse(noisy, hn::Mul(s, total), hn::Add(n, s)),
+                         hn::IfThenElse(noisy, history, one));
+  return {variance, age};
+}
+
+// New ages and variances of a row of pixels from their windows.
 void FinishRow(const InnovationInputs& in, const InnovationOptions& options, const Tile& row,
                const Sums& window, const InnovationOutputs& out) {
-  const float* old_age = in.age.at(row.x0, row.y0);
-  const float* all_samples = in.samples.at(row.x0, row.y0);
-  const float* all_confirmed = in.confirmed.at(row.x0, row.y0);
-  float* new_age = out.age.at(row.x0, row.y0);
-  float* variances = out.variance.at(row.x0, row.y0);
-  const float tested_share = options.test ? 1.0f : 0.0f;
-  const auto larger = [](float a, float b) { return a > b ? a : b; };
-  const auto smaller = [](float a, float b) { return a < b ? a : b; };
-  for (int i = 0; i < row.x1 - row.x0; ++i) {
-    const float age = old_age[i], samples = all_samples[i], count = window.count[i];
-    const bool confirmed = all_confirmed[i] > 0.0f, alone = count < 2.0f;
+  const F d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f), two = hn::Set(d, 2.0f);
+  const VF longest = hn::Set(d, options.max_age), shortest_step = hn::Set(d, 1.0f / 16.0f);
+  for (int i = 0; i < row.x1 - row.x0; i += lanes) {
+    const auto load = [&](const Plane<float>& plane) {
+      return hn::LoadU(d, plane.row(row.y0) + row.x0 + i);
+    };
+    const VF age = load(in.age), samples = load(in.samples), count = hn::Load(d, window.count + i);
+    const auto confirmed = hn::Gt(load(in.confirmed), zero), alone = hn::Lt(count, two);
     // Stand-ins keep the arithmetic of pixels finite whose result is not used.
-    const float n = confirmed ? age : 1.0f, s = confirmed ? samples : 1.0f;
-    const float inverse_count = 1.0f / (alone ? 1.0f : count);
-    const float mean = window.mean[i] * inverse_count;
-    const float variance = larger(window.square[i] * inverse_count - mean * mean, 0.0f);
-    const float noise = variance * inverse_count * (1.0f + 1.0f / n);
-    const float excess = tested_share * larger(mean * mean - options.threshold * noise, 0.0f);
-    const float history = variance / n + excess;
-    const float total = history + variance / s;
-    const float weight = total > 0.0f ? history / (total > 0.0f ? total : 1.0f) : s / (n + s);
+    const VF n = hn::IfThenElse(confirmed, age, one), s = hn::IfThenElse(confirmed, samples, one);
+    const Found found =
+        TestInnovation(options, n, s, hn::IfThenElse(alone, one, count),
+                       hn::Load(d, window.mean + i), hn::Load(d, window.square + i));
     // An age below the frame's own samples would weigh them more than once.
-    const float max_age = larger(options.max_age, s);
-    const float tested = smaller(s / larger(weight, s / (2.0f * max_age)), max_age);
+    const VF most = hn::Max(longest, s);
+    const VF tested = hn::Min(found.age, most);
     // Alone there is no spread to test a mean against. A new pixel starts; one without usable
     // sample waits, as it has samples 0.
-    const float unconfirmed = smaller(age + samples, larger(options.max_age, samples));
-    const float lone = smaller(n + s, max_age);
-    new_age[i] = confirmed ? (alone ? lone : tested) : unconfirmed;
+    const VF unconfirmed = hn::Min(hn::Add(age, samples), hn::Max(longest, samples));
+    const VF lone = hn::Min(hn::Add(n, s), most);
+    hn::StoreU(hn::IfThenElse(confirmed, hn::IfThenElse(alone, lone, tested), unconfirmed), d,
+               out.age.row(row.y0) + row.x0 + i);
     // The memory of the variance is that of the light, but no longer than 16 frames.
-    const float step = larger(s / tested, 1.0f / 16.0f);
-    const float moved = variances[i] + step * (variance - variances[i]);
-    variances[i] = confirmed && !alone ? moved : variances[i];
+    const VF step = hn::Max(hn::Div(s, tested), shortest_step);
+    float* variances = out.variance.row(row.y0) + row.x0 + i;
+    const VF before = hn::LoadU(d, variances);
+    const VF moved = hn::MulAdd(step, hn::Sub(found.variance, before), before);
+    hn::StoreU(hn::IfThenElse(hn::AndNot(alone, confirmed), moved, before), d, variances);
   }
 }
 
@@ -175,6 +201,7 @@ HWY_EXPORT(InnovationTile);
 
 void innovation_tile(const InnovationInputs& in, const InnovationOptions& options, const Tile& tile,
                      const InnovationOutputs& out) {
+  const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(InnovationTile)(in, options, tile, out);
 }
 
