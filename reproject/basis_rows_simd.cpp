@@ -116,23 +116,28 @@ void Load(const BasisField& field, const Tile& row, BasisRows& rows) {
   }
 }
 
-void Save(const BasisRows& rows, const Tile& row, BasisField& field) {
+// A group of pixels of which `count` are meant; what lies beyond goes where it does no harm.
+void SaveGroup(const RowTable& table, int floats, int i, int count, float* out) {
   const D tag;
-  alignas(64) float zero[kSegment] = {};
-  const RowTable table(const_cast<BasisRows&>(rows), zero, field.bases());
+  alignas(64) float beyond[4];
+  for (int j = 0; j < floats; j += 4) {
+    V v[4];
+    for (int n = 0; n < 4; ++n) v[n] = hn::Load(tag, table.row[j + n] + i);
+    Transpose(v[0], v[1], v[2], v[3]);
+    const auto pixel = [&](int n) { return n < count ? out + n * floats + j : beyond; };
+    for (int n = 0; n < 4; ++n) StorePixels(tag, v[n], pixel(n), pixel(n + kGroup - 4));
+  }
+}
+
+void Save(const BasisRows& rows, const Tile& row, BasisField& field) {
+  alignas(64) static constexpr float kZero[kSegment] = {};
+  const RowTable table(const_cast<BasisRows&>(rows), const_cast<float*>(kZero), field.bases());
   const int floats = field.pixel_floats(), count = row.x1 - row.x0;
   float* out = field.pixel(row.x0, row.y0);
-  // What lies beyond the last pixel goes where it does no harm.
-  alignas(64) float beyond[4];
-  for (int i = 0; i < count; i += kGroup) {
-    for (int j = 0; j < floats; j += 4) {
-      V v[4];
-      for (int n = 0; n < 4; ++n) v[n] = hn::Load(tag, table.row[j + n] + i);
-      Transpose(v[0], v[1], v[2], v[3]);
-      const auto pixel = [&](int n) { return i + n < count ? out + (i + n) * floats + j : beyond; };
-      for (int n = 0; n < 4; ++n) StorePixels(tag, v[n], pixel(n), pixel(n + kGroup - 4));
-    }
-  }
+  int i = 0;
+  // A constant count leaves no tests in the loop.
+  for (; i + kGroup <= count; i += kGroup) SaveGroup(table, floats, i, kGroup, out + i * floats);
+  if (i < count) SaveGroup(table, floats, i, count - i, out + i * floats);
 }
 
 #endif

@@ -2,6 +2,7 @@
 
 #include "frame/float_traps.h"
 #include "reproject/basis_rows.h"
+#include "reproject/prefetch.h"
 #include "temporal/predict.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -44,8 +45,13 @@ void PredictVector(const BasisRows& rows, int bases, const CoefficientRows& coef
       sum = hn::MulAdd(hn::Load(d, coefficient[k] + i), hn::Load(d, values[k] + i), sum);
     }
     hn::StoreU(sum, d, out.prediction[c].row(y) + x);
+    prefetch_below(light[c], x, y);
+    prefetch_below(out.prediction[c], x, y);
     const VF off = hn::Sub(hn::LoadU(d, light[c].row(y) + x), sum);
     residual = hn::MulAdd(hn::Set(d, weights[c]), off, residual);
+  }
+  for (const Plane<float>* plane : {&out.residual, &out.confirmed, &out.age, &out.variance}) {
+    prefetch_below(*plane, x, y);
   }
   const VF age = hn::Load(d, rows.age + i);
   // False of NaN.

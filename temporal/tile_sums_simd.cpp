@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "frame/float_traps.h"
+#include "reproject/prefetch.h"
 #include "temporal/tile_sums.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -24,53 +25,61 @@ struct Row {
   int vectors;  // whole vectors of lanes that cover the row
 };
 
-// Takes influence from pixels that are off by far more than expected. Returns how many there are.
-int HoldBackOutliers(int count, Row& row) {
-  int outliers = 0;
-  for (int i = 0; i < count; ++i) {
-    const float off =
-        0.2126f * row.residual[0][i] + 0.7152f * row.residual[1][i] + 0.0722f * row.residual[2][i];
-    const float excess = row.weight[i] * off * off * (1.0f / (kOutlier * kOutlier));
-    row.weight[i] /= excess > 1.0f ? excess : 1.0f;
-    outliers += excess > 1.0f ? 1 : 0;
-  }
-  return outliers;
+// Rec. 709 luminance.
+VF Luminance(const VF (&v)[3]) {
+  const F d;
+  return hn::MulAdd(hn::Set(d, 0.2126f), v[0],
+                    hn::MulAdd(hn::Set(d, 0.7152f), v[1], hn::Mul(hn::Set(d, 0.0722f), v[2])));
 }
 
-void LoadRow(const SumInputs& in, const Tile& segment, Row& row) {
+// How many pixels of a row count, and how many of them are off by far more than expected.
+struct RowCount {
+  std::size_t used = 0, outliers = 0;
+};
+
+// Bounded, outliers lose influence.
+RowCount LoadRow(const SumInputs& in, const Tile& segment, bool is_bounded, Row& row) {
   const F d;
   load_rows(in.bases, segment, row.bases);
   const int bases = in.bases.bases(), lanes = static_cast<int>(hn::Lanes(d));
   const int count = segment.x1 - segment.x0;
   row.vectors = (count + lanes - 1) / lanes;
-  const VF largest = hn::Set(d, kLargestLight);
+  const VF largest = hn::Set(d, kLargestLight), one = hn::Set(d, 1.0f);
+  RowCount found;
   for (int i = 0; i < count; i += lanes) {
-    VF u[3], v[3];
+    VF u[3], v[3], residual[3];
     for (int c = 0; c < 3; ++c) {
+      prefetch_below(in.frame.indirect[static_cast<std::size_t>(c)], segment.x0 + i, segment.y0);
       u[c] = hn::LoadU(
           d, in.frame.indirect[static_cast<std::size_t>(c)].row(segment.y0) + segment.x0 + i);
       v[c] = hn::Load(d, row.bases.values[c * bases] + i);
     }
     const VF age = hn::Load(d, row.bases.age + i);
-    // Rec. 709 luminance; comparisons with NaN are false.
-    const VF luminance =
-        hn::MulAdd(hn::Set(d, 0.2126f), v[0],
-                   hn::MulAdd(hn::Set(d, 0.7152f), v[1], hn::Mul(hn::Set(d, 0.0722f), v[2])));
+    // Comparisons with NaN are false; the age behind the last pixel is 0.
+    const VF luminance = Luminance(v);
+    prefetch_below(in.variance, segment.x0 + i, segment.y0);
     const VF variance = hn::LoadU(d, in.variance.row(segment.y0) + segment.x0 + i);
     const VF expected = hn::MulAdd(hn::Mul(hn::Set(d, 0.01f), luminance), luminance, variance);
     auto used = hn::And(hn::Gt(age, hn::Zero(d)), hn::Gt(expected, hn::Set(d, 1e-30f)));
     for (const VF& value : u) used = hn::And(used, hn::Le(hn::Abs(value), largest));
-    const VF weight = hn::Div(age, hn::Mul(hn::Add(age, hn::Set(d, 1.0f)),
-                                           hn::IfThenElse(used, expected, hn::Set(d, 1.0f))));
-    hn::Store(hn::IfThenElseZero(used, weight), d, row.weight + i);
+    VF weight = hn::Div(age, hn::Mul(hn::Add(age, one), hn::IfThenElse(used, expected, one)));
+    weight = hn::IfThenElseZero(used, weight);
     for (int c = 0; c < 3; ++c) {
-      hn::Store(hn::IfThenElseZero(used, hn::Sub(u[c], v[c])), d, row.residual[c] + i);
+      residual[c] = hn::IfThenElseZero(used, hn::Sub(u[c], v[c]));
+      hn::Store(residual[c], d, row.residual[c] + i);
     }
+    found.used += hn::CountTrue(d, used);
+    if (is_bounded) {
+      const VF off = Luminance(residual);
+      const VF excess = hn::Mul(hn::Mul(hn::Mul(weight, off), off),
+                                hn::Set(d, 1.0f / (kOutlier * kOutlier)));
+      const auto beyond = hn::Gt(excess, one);
+      weight = hn::Div(weight, hn::IfThenElse(beyond, excess, one));
+      found.outliers += hn::CountTrue(d, beyond);
+    }
+    hn::Store(weight, d, row.weight + i);
   }
-  for (int i = count; i < row.vectors * lanes; ++i) {
-    row.weight[i] = 0.0f;
-    for (auto& channel : row.residual) channel[i] = 0.0f;
-  }
+  return found;
 }
 
 // sum_c a_c b_c of one vector of pixels; the channels of a and b stand `a_step`, `b_step` apart.
@@ -121,12 +130,11 @@ void AddRow(const Row& row, int bases, int active, TileSums& sums) {
 void AddTile(const SumInputs& in, const Tile& tile, bool is_bounded, TileSums& sums) {
   Row row;
   for (int y = tile.y0; y < tile.y1; ++y) {
-    LoadRow(in, {tile.x0, y, tile.x1, y + 1, tile.index}, row);
-    const int count = tile.x1 - tile.x0;
-    const auto used = std::count_if(row.weight, row.weight + count, [](float m) { return m > 0; });
-    if (used == 0) continue;
-    sums.pixels += static_cast<double>(used);
-    if (is_bounded) sums.outliers += HoldBackOutliers(count, row);
+    const Tile segment{tile.x0, y, tile.x1, y + 1, tile.index};
+    const RowCount found = LoadRow(in, segment, is_bounded, row);
+    if (found.used == 0) continue;
+    sums.pixels += static_cast<double>(found.used);
+    sums.outliers += static_cast<double>(found.outliers);
     AddRow(row, in.bases.bases(), std::min(in.active, in.bases.bases()), sums);
   }
 }

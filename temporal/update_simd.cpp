@@ -1,5 +1,6 @@
 #include "frame/float_traps.h"
 #include "reproject/basis_rows.h"
+#include "reproject/prefetch.h"
 #include "temporal/update.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -33,6 +34,7 @@ struct Step {
 Step FindStep(const UpdateInputs& in, const Tile& segment, int i, Row& row) {
   const F d;
   const auto load = [&](const Plane<float>& plane) {
+    prefetch_below(plane, segment.x0 + i, segment.y0);
     return hn::LoadU(d, plane.row(segment.y0) + segment.x0 + i);
   };
   const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f);
@@ -93,6 +95,7 @@ void UpdateTile(const UpdateInputs& in, const Tile& tile, const BasisField& from
       const Step step = FindStep(in, segment, i, row);
       for (std::size_t c = 0; c < 3; ++c) {
         const auto load = [&](const Planes<3>& planes) {
+          prefetch_below(planes[c], tile.x0 + i, y);
           return hn::LoadU(d, planes[c].row(y) + tile.x0 + i);
         };
         const VF residual = hn::Sub(load(in.light), load(in.prediction));
@@ -101,6 +104,7 @@ void UpdateTile(const UpdateInputs& in, const Tile& tile, const BasisField& from
                                   : hn::IfThenElseZero(step.known, load(*in.correction));
         const VF estimate = UpdateBases(in, step, residual, correction, static_cast<int>(c), i,
                                         from, out.bases, row);
+        prefetch_below(out.estimate[c], tile.x0 + i, y);
         hn::StoreU(estimate, d, out.estimate[c].row(y) + tile.x0 + i);
       }
     }
