@@ -134,9 +134,13 @@ void Save(const BasisRows& rows, const Tile& row, BasisField& field) {
   const RowTable table(const_cast<BasisRows&>(rows), const_cast<float*>(kZero), field.bases());
   const int floats = field.pixel_floats(), count = row.x1 - row.x0;
   float* out = field.pixel(row.x0, row.y0);
+  const std::size_t below = row.y0 + 1 < field.extent().height ? field.data().stride() : 0;
   int i = 0;
-  // A constant count leaves no tests in the loop.
-  for (; i + kGroup <= count; i += kGroup) SaveGroup(table, floats, i, kGroup, out + i * floats);
+  for (; i + kGroup <= count; i += kGroup) {
+    for (int j = 0; j < kGroup * floats; j += 16) hwy::Prefetch(out + i * floats + j + below);
+    // A constant count leaves no tests in the loop.
+    SaveGroup(table, floats, i, kGroup, out + i * floats);
+  }
   if (i < count) SaveGroup(table, floats, i, count - i, out + i * floats);
 }
 

@@ -1,11 +1,11 @@
 #include <limits>
 
 #include "frame/float_traps.h"
+#include "frame/prefetch.h"
 #include "reproject/taps.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "reproject/taps_simd.cpp"
-#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -143,21 +143,15 @@ Query LoadQuery(const Frame& current, const PreviousSurface& previous, const Tap
   return q;
 }
 
-// A tile's rows are a few lines each, too short for the hardware to foresee the next: asks for
-// those of the row below.
-void PrefetchRow(const Frame& current, const GBuffer& previous, const Tile& row) {
-  if (row.y1 == current.extent().height) return;
-  const auto lines = [&](const auto& plane) {
-    constexpr int kStep = static_cast<int>(Plane<float>::kLine / sizeof(float));
-    for (int x = row.x0; x < row.x1; x += kStep) hwy::Prefetch(plane.row(row.y1) + x);
-  };
-  for (const auto& plane : current.motion) lines(plane);
-  lines(current.previous_depth);
+// Asks for what the row below will read.
+void PrefetchBelow(const Frame& current, const GBuffer& previous, int x, int y) {
+  for (const auto& plane : current.motion) prefetch_below(plane, x, y);
+  prefetch_below(current.previous_depth, x, y);
   for (const GBuffer* surface : {&current.surface, &previous}) {
-    for (const auto& plane : surface->normal) lines(plane);
-    lines(surface->id);
+    for (const auto& plane : surface->normal) prefetch_below(plane, x, y);
+    prefetch_below(surface->id, x, y);
   }
-  lines(previous.depth);
+  prefetch_below(previous.depth, x, y);
 }
 
 // Where the upper left taps of all valid lanes stand side by side in one row, with all four taps of
@@ -196,9 +190,9 @@ void ComputeTaps(const Frame& current, const PreviousSurface& previous, const Ta
   const VI zero = hn::Zero(di);
   const VF one = hn::Set(d, 1.0f);
   const int lanes = static_cast<int>(hn::Lanes(d));
-  PrefetchRow(current, previous.surface, row);
 
   for (int x = row.x0; x < row.x1; x += lanes) {
+    PrefetchBelow(current, previous.surface, x, row.y0);
     const Query q = LoadQuery(current, previous, options, rays, x, row.y0);
     const VF floor_x = hn::Floor(q.x), floor_y = hn::Floor(q.y);
     const VF fx = hn::Sub(q.x, floor_x), fy = hn::Sub(q.y, floor_y);

@@ -1,5 +1,7 @@
 #include "temporal/guides.h"
 
+#include "frame/prefetch.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "temporal/guides_simd.cpp"
 #include <hwy/foreach_target.h>
@@ -19,6 +21,8 @@ GuideCounts CountGuides(const GBuffer& surface, const Tile& row) {
   const int lanes = static_cast<int>(hn::Lanes(d)), y = row.y0;
   GuideCounts counts;
   for (int x = row.x0; x < row.x1; x += lanes) {
+    prefetch_below(surface.id, x, y);
+    prefetch_below(surface.depth, x, y);
     const auto id = hn::LoadU(du, surface.id.row(y) + x);
     const auto inside = hn::FirstN(d, static_cast<std::size_t>(row.x1 - x));
     const auto shown = hn::And(inside, hn::RebindMask(d, hn::Ne(id, hn::Zero(du))));
@@ -28,6 +32,7 @@ GuideCounts CountGuides(const GBuffer& surface, const Tile& row) {
                                          hn::Le(depth, hn::Set(d, kFarthestDepth))));
     VF square = hn::Zero(d);
     for (const auto& plane : surface.normal) {
+      prefetch_below(plane, x, y);
       const VF n = hn::LoadU(d, plane.row(y) + x);
       const auto small = hn::Le(hn::Abs(n), hn::Set(d, kLargestNormal));
       usable = hn::And(usable, small);

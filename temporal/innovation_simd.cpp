@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "frame/float_traps.h"
+#include "frame/prefetch.h"
 #include "frame/strips.h"
 #include "temporal/innovation.h"
 
@@ -61,6 +62,8 @@ void SumRow(const InnovationInputs& in, const Tile& tile, int y, Sums& sums) {
   const float* used = in.confirmed.at(first, y);
   const int seen = last - first;
   const auto take = [&](auto tag, int i) {
+    prefetch_below(in.residual, first + i, y);
+    prefetch_below(in.confirmed, first + i, y);
     const auto v = hn::LoadU(tag, e + i);
     hn::StoreU(hn::LoadU(tag, used + i), tag, confirmed + shift + i);
     hn::StoreU(v, tag, value + shift + i);
@@ -117,6 +120,7 @@ void FinishRow(const InnovationInputs& in, const InnovationOptions& options, con
   const VF longest = hn::Set(d, options.max_age), shortest_step = hn::Set(d, 1.0f / 16.0f);
   for (int i = 0; i < row.x1 - row.x0; i += lanes) {
     const auto load = [&](const Plane<float>& plane) {
+      prefetch_below(plane, row.x0 + i, row.y0);
       return hn::LoadU(d, plane.row(row.y0) + row.x0 + i);
     };
     const VF age = load(in.age), samples = load(in.samples), count = hn::Load(d, window.count + i);
@@ -137,6 +141,7 @@ void FinishRow(const InnovationInputs& in, const InnovationOptions& options, con
                out.age.row(row.y0) + row.x0 + i);
     // The memory of the variance is that of the light, but no longer than 16 frames.
     const VF step = hn::Max(hn::Div(s, tested), shortest_step);
+    prefetch_below(out.variance, row.x0 + i, row.y0);
     float* variances = out.variance.row(row.y0) + row.x0 + i;
     const VF before = hn::LoadU(d, variances);
     const VF moved = hn::MulAdd(step, hn::Sub(found.variance, before), before);

@@ -1,8 +1,8 @@
 #include <limits>
 
 #include "frame/float_traps.h"
+#include "frame/prefetch.h"
 #include "reproject/basis_rows.h"
-#include "reproject/prefetch.h"
 #include "temporal/predict.h"
 
 #undef HWY_TARGET_INCLUDE

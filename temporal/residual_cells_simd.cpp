@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "frame/prefetch.h"
 #include "reproject/taps.h"
 #include "temporal/residual_cells.h"
 
@@ -46,7 +47,10 @@ BlockSums SumBlock(const CorrectionInputs& in, const Plane<float>& residual, con
     VB mean = hn::Zero(d), noise = hn::Zero(d), count = hn::Zero(d);
     const auto inside = hn::FirstN(d, static_cast<std::size_t>(block.x1 - x));
     for (int y = block.y0; y < block.y1; ++y) {
-      const auto load = [&](const Plane<float>& plane) { return hn::LoadU(d, plane.row(y) + x); };
+      const auto load = [&](const Plane<float>& plane) {
+        prefetch_below(plane, x, y);
+        return hn::LoadU(d, plane.row(y) + x);
+      };
       const MB used = hn::And(inside, hn::Gt(load(in.confirmed), hn::Zero(d)));
       mean = hn::Add(mean, hn::IfThenElseZero(used, load(residual)));
       noise =
@@ -96,6 +100,9 @@ Quad<hn::Vec<D>> LoadQuad(D d, const Plane<T>& plane, const Place& place) {
   Quad<hn::Vec<D>> quad;
   for (std::size_t row = 0; row < 2; ++row) {
     const auto* from = reinterpret_cast<const hn::TFromD<D>*>(plane.row(place.rows[row]));
+    if (place.rows[row] + 2 < plane.height()) {
+      hwy::Prefetch(plane.row(place.rows[row] + 2) + place.column);
+    }
     hn::LoadInterleaved2(d, from + place.column, quad.at[2 * row], quad.at[2 * row + 1]);
   }
   return quad;
@@ -213,7 +220,10 @@ struct View {
 
 Taker LoadTaker(const View& view, const Frame& frame, const TapOptions& taps, int x, int y) {
   const F d;
-  const auto load = [&](const Plane<float>& plane) { return hn::LoadU(d, plane.row(y) + x); };
+  const auto load = [&](const Plane<float>& plane) {
+    prefetch_below(plane, x, y);
+    return hn::LoadU(d, plane.row(y) + x);
+  };
   Taker taker;
   for (std::size_t c = 0; c < 3; ++c) taker.normal[c] = load(frame.surface.normal[c]);
   const glm::mat3& m = view.camera.world_to_view;
@@ -229,6 +239,7 @@ Taker LoadTaker(const View& view, const Frame& frame, const TapOptions& taps, in
   const VF depth = load(frame.surface.depth);
   taker.plane = hn::Mul(depth, view.Along(taker.view_normal, column, line));
   taker.tolerance = hn::Mul(depth, hn::Set(d, taps.plane_distance));
+  prefetch_below(frame.surface.id, x, y);
   taker.id = hn::LoadU(I(), reinterpret_cast<const std::int32_t*>(frame.surface.id.row(y)) + x);
   for (auto& sum : taker.sum) sum = hn::Zero(d);
   taker.weight = hn::Zero(d);
@@ -274,11 +285,15 @@ void GiveTaker(const Taker& taker, const Plane<float>& confirmed, int x, int y,
       hn::IfThenElseZero(takes, hn::Div(one, hn::IfThenElse(takes, taker.weight, one)));
   VF given[3];
   for (std::size_t c = 0; c < 3; ++c) {
+    prefetch_below(out.correction[c], x, y);
+    prefetch_below(out.prediction[c], x, y);
     given[c] = hn::Mul(taker.sum[c], scale);
     hn::StoreU(given[c], d, out.correction[c].row(y) + x);
     float* prediction = out.prediction[c].row(y) + x;
     hn::StoreU(hn::Add(hn::LoadU(d, prediction), given[c]), d, prediction);
   }
+  prefetch_below(confirmed, x, y);
+  prefetch_below(out.residual, x, y);
   const VF luminance =
       hn::MulAdd(hn::Set(d, 0.2126f), given[0],
                  hn::MulAdd(hn::Set(d, 0.7152f), given[1], hn::Mul(hn::Set(d, 0.0722f), given[2])));

@@ -2,6 +2,7 @@
 #include <array>
 #include <limits>
 
+#include "frame/prefetch.h"
 #include "reproject/taps.h"
 #include "temporal/firefly_bound.h"
 #include "temporal/signal.h"
@@ -41,14 +42,20 @@ SignalCounts MergeSamples(const SignalInputs& in, const Tile& tile, const Signal
       const VF scale = hn::Div(hn::Set(d, 1.0f), samples);
       VF light[3], size = zero;
       for (std::size_t c = 0; c < 3; ++c) {
+        prefetch_below(in.frame.indirect[c], x, y);
+        prefetch_below(out.light[c], x, y);
         light[c] = hn::Mul(regular, hn::LoadU(d, in.frame.indirect[c].row(y) + x));
         if (in.extra_mean != nullptr) {
+          prefetch_below((*in.extra_mean)[c], x, y);
           const VF more = hn::Mul(extra, hn::LoadU(d, (*in.extra_mean)[c].row(y) + x));
           light[c] = hn::Add(light[c], hn::IfThenElseZero(granted, more));
         }
         light[c] = hn::Mul(light[c], scale);
         size = hn::Add(size, hn::Abs(light[c]));
       }
+      prefetch_below(in.frame.surface.id, x, y);
+      prefetch_below(in.age, x, y);
+      prefetch_below(out.samples, x, y);
       const auto id = hn::LoadU(du, in.frame.surface.id.row(y) + x);
       const auto inside = hn::FirstN(d, static_cast<std::size_t>(tile.x1 - x));
       const auto surface = hn::And(inside, hn::RebindMask(d, hn::Ne(id, hn::Zero(du))));
@@ -68,18 +75,26 @@ SignalCounts MergeSamples(const SignalInputs& in, const Tile& tile, const Signal
 }
 
 void EstimateVariance(const EstimateInputs& in, const Tile& tile, const EstimateOutputs& out) {
+  const F d;
+  const hn::RebindToUnsigned<F> du;
+  const hn::Rebind<std::uint8_t, F> bytes;
+  const hn::RebindToSigned<F> di;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f);
   for (int y = tile.y0; y < tile.y1; ++y) {
-    const std::uint32_t* id = in.id.at(tile.x0, y);
-    const float* age = in.age.at(tile.x0, y);
-    const float* variance = in.variance.at(tile.x0, y);
-    float* estimate = out.variance.at(tile.x0, y);
-    std::uint8_t* young = out.young.at(tile.x0, y);
-    for (int i = 0; i < tile.x1 - tile.x0; ++i) {
-      const float n = age[i] > 0.0f ? age[i] : 1.0f;
-      estimate[i] = age[i] > 0.0f ? variance[i] / n : 0.0f;
-    }
-    for (int i = 0; i < tile.x1 - tile.x0; ++i) {
-      young[i] = static_cast<std::uint8_t>((id[i] != 0) & (age[i] < in.young));
+    for (int x = tile.x0; x < tile.x1; x += lanes) {
+      prefetch_below(in.id, x, y);
+      prefetch_below(out.variance, x, y);
+      const VF age = hn::LoadU(d, in.age.row(y) + x);
+      const auto known = hn::Gt(age, zero);
+      const VF variance = hn::Div(hn::LoadU(d, in.variance.row(y) + x),
+                                  hn::IfThenElse(known, age, one));
+      hn::StoreU(hn::IfThenElseZero(known, variance), d, out.variance.row(y) + x);
+      const auto id = hn::LoadU(du, in.id.row(y) + x);
+      const auto young = hn::And(hn::RebindMask(d, hn::Ne(id, hn::Zero(du))),
+                                 hn::Lt(age, hn::Set(d, in.young)));
+      const auto flag = hn::IfThenElseZero(hn::RebindMask(di, young), hn::Set(di, 1));
+      hn::StoreU(hn::DemoteTo(bytes, flag), bytes, out.young.row(y) + x);
     }
   }
 }

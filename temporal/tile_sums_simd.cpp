@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "frame/float_traps.h"
-#include "reproject/prefetch.h"
+#include "frame/prefetch.h"
 #include "temporal/tile_sums.h"
 
 #undef HWY_TARGET_INCLUDE

@@ -1,6 +1,6 @@
 #include "frame/float_traps.h"
+#include "frame/prefetch.h"
 #include "reproject/basis_rows.h"
-#include "reproject/prefetch.h"
 #include "temporal/update.h"
 
 #undef HWY_TARGET_INCLUDE
