@@ -143,17 +143,6 @@ Query LoadQuery(const Frame& current, const PreviousSurface& previous, const Tap
   return q;
 }
 
-// Asks for what the row below will read.
-void PrefetchBelow(const Frame& current, const GBuffer& previous, int x, int y) {
-  for (const auto& plane : current.motion) prefetch_below(plane, x, y);
-  prefetch_below(current.previous_depth, x, y);
-  for (const GBuffer* surface : {&current.surface, &previous}) {
-    for (const auto& plane : surface->normal) prefetch_below(plane, x, y);
-    prefetch_below(surface->id, x, y);
-  }
-  prefetch_below(previous.depth, x, y);
-}
-
 // Where the upper left taps of all valid lanes stand side by side in one row, with all four taps of
 // each inside the image, the tap of the first lane. That is almost everywhere, and plain loads take
 // a fraction of the time of gathers.
@@ -180,6 +169,20 @@ Run FindRun(VI x0, VI y0, MF valid, Extent extent) {
   return inside && hn::AllTrue(di, hn::Or(same, hn::Not(known))) ? run : Run{};
 }
 
+// Asks for what the row below will read: its own pixels, and the lower taps of a run.
+void PrefetchBelow(const Frame& current, const GBuffer& previous, const Run& run, int x, int y) {
+  const auto guides = [](const GBuffer& surface, int column, int row) {
+    for (const auto& plane : surface.normal) prefetch_below(plane, column, row);
+    prefetch_below(surface.id, column, row);
+  };
+  for (const auto& plane : current.motion) prefetch_below(plane, x, y);
+  prefetch_below(current.previous_depth, x, y);
+  guides(current.surface, x, y);
+  if (!run.found) return;
+  prefetch_below(previous.depth, run.x, run.y + 1);
+  guides(previous, run.x, run.y + 1);
+}
+
 void ComputeTaps(const Frame& current, const PreviousSurface& previous, const TapOptions& options,
                  const Tile& row, TapSegment& taps) {
   const F d;
@@ -192,13 +195,13 @@ void ComputeTaps(const Frame& current, const PreviousSurface& previous, const Ta
   const int lanes = static_cast<int>(hn::Lanes(d));
 
   for (int x = row.x0; x < row.x1; x += lanes) {
-    PrefetchBelow(current, previous.surface, x, row.y0);
     const Query q = LoadQuery(current, previous, options, rays, x, row.y0);
     const VF floor_x = hn::Floor(q.x), floor_y = hn::Floor(q.y);
     const VF fx = hn::Sub(q.x, floor_x), fy = hn::Sub(q.y, floor_y);
     const VI x0 = hn::ConvertTo(di, floor_x), y0 = hn::ConvertTo(di, floor_y);
     const VF wx[2] = {hn::Sub(one, fx), fx}, wy[2] = {hn::Sub(one, fy), fy};
     const Run run = FindRun(x0, y0, q.valid, extent);
+    PrefetchBelow(current, previous.surface, run, x, row.y0);
 
     const auto at = static_cast<std::size_t>(x - row.x0);
     VF weight[4], sum = hn::Zero(d);

@@ -1,5 +1,9 @@
 #include "reproject/warp.h"
 
+#include <algorithm>
+
+#include "frame/prefetch.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "reproject/warp_simd.cpp"
 #include <hwy/cache_control.h>
@@ -57,6 +61,48 @@ void WarpBases(const BasisField& from, const TapSegment& taps, const Tile& row, 
   }
 }
 
+using F = hn::ScalableTag<float>;
+using I = hn::RebindToSigned<F>;
+
+// Whether the taps of a vector stand side by side, all inside the image.
+bool IsRun(const TapSegment& taps, std::size_t i) {
+  const I di;
+  const auto x = hn::Load(di, taps.x[0].data() + i), y = hn::Load(di, taps.y[0].data() + i);
+  const auto first_x = hn::Set(di, taps.x[0][i]), first_y = hn::Set(di, taps.y[0][i]);
+  const auto along = hn::Eq(hn::Sub(x, hn::Iota(di, 0)), first_x);
+  const std::size_t last = i + hn::Lanes(di) - 1;
+  return taps.x[1][last] == taps.x[0][last] + 1 && taps.y[2][i] == taps.y[0][i] + 1 &&
+         hn::AllTrue(di, hn::And(along, hn::Eq(y, first_y)));
+}
+
+void WarpPlane(const Plane<float>& from, const TapSegment& taps, const Tile& row,
+               Plane<float>& to) {
+  const F d;
+  const std::size_t lanes = hn::Lanes(d), count = static_cast<std::size_t>(row.x1 - row.x0);
+  float* out = to.at(row.x0, row.y0);
+  for (std::size_t i = 0; i < count; i += lanes) {
+    prefetch_below(to, row.x0 + static_cast<int>(i), row.y0);
+    if (IsRun(taps, i)) {
+      const int x = taps.x[0][i], y = taps.y[0][i];
+      prefetch_below(from, x, y + 1);
+      auto sum = hn::Zero(d);
+      for (int t = 0; t < 4; ++t) {
+        const auto weight = hn::Load(d, taps.weight[static_cast<std::size_t>(t)].data() + i);
+        sum = hn::MulAdd(weight, hn::LoadU(d, from.row(y + t / 2) + x + t % 2), sum);
+      }
+      hn::StoreU(sum, d, out + i);
+      continue;
+    }
+    for (std::size_t j = i; j < std::min(i + lanes, count); ++j) {
+      float sum = 0.0f;
+      for (std::size_t t = 0; t < 4; ++t) {
+        sum += taps.weight[t][j] * from(taps.x[t][j], taps.y[t][j]);
+      }
+      out[j] = sum;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace eigenlight::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -65,6 +111,7 @@ HWY_AFTER_NAMESPACE();
 namespace eigenlight {
 
 HWY_EXPORT(WarpBases);
+HWY_EXPORT(WarpPlane);
 
 void warp_bases(const BasisField& from, const TapSegment& taps, const Tile& row, BasisField& to) {
   EL_DCHECK(from.bases() == to.bases() && row.x1 - row.x0 <= kSegment);
@@ -73,12 +120,8 @@ void warp_bases(const BasisField& from, const TapSegment& taps, const Tile& row,
 
 void warp_plane(const Plane<float>& from, const TapSegment& taps, const Tile& row,
                 Plane<float>& to) {
-  float* out = to.at(row.x0, row.y0);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(row.x1 - row.x0); ++i) {
-    float sum = 0.0f;
-    for (std::size_t t = 0; t < 4; ++t) sum += taps.weight[t][i] * from(taps.x[t][i], taps.y[t][i]);
-    out[i] = sum;
-  }
+  EL_DCHECK(row.x1 - row.x0 <= kSegment);
+  HWY_DYNAMIC_DISPATCH(WarpPlane)(from, taps, row, to);
 }
 
 }  // namespace eigenlight
