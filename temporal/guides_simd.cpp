@@ -1,6 +1,5 @@
-#include "temporal/guides.h"
-
 #include "frame/prefetch.h"
+#include "temporal/guides.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "temporal/guides_simd.cpp"

@@ -55,8 +55,8 @@ void PredictVector(const BasisRows& rows, int bases, const CoefficientRows& coef
   }
   const VF age = hn::Load(d, rows.age + i);
   // False of NaN.
-  const auto confirmed = hn::And(hn::Gt(age, hn::Zero(d)),
-                                 hn::Le(hn::Abs(residual), hn::Set(d, kLargest)));
+  const auto confirmed =
+      hn::And(hn::Gt(age, hn::Zero(d)), hn::Le(hn::Abs(residual), hn::Set(d, kLargest)));
   hn::StoreU(hn::IfThenElseZero(confirmed, residual), d, out.residual.row(y) + x);
   hn::StoreU(hn::IfThenElseZero(confirmed, hn::Set(d, 1.0f)), d, out.confirmed.row(y) + x);
   hn::StoreU(age, d, out.age.row(y) + x);

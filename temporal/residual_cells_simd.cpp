@@ -191,143 +191,6 @@ void LoadCells(const CorrectionInputs& in, const Planes<3>& prediction, const Ti
   }
 }
 
-using F = hn::ScalableTag<float>;
-using I = hn::RebindToSigned<F>;
-using VF = hn::Vec<F>;
-using VI = hn::Vec<I>;
-
-// What a vector of pixels asks of the cells around, and what it got.
-struct Taker {
-  VF normal[3], view_normal[3];
-  VF plane, tolerance;  // N . X, and the distance off the plane that is still the same surface
-  VI id;
-  VF sum[3], weight;
-};
-
-struct View {
-  const ResidualCells& cells;
-  const Camera& camera;
-
-  // N . ray through a pixel coordinate of the frame of cells.
-  [[nodiscard]] VF Along(const VF (&n)[3], VF x, VF y) const {
-    const F d;
-    const VF scale = hn::Set(d, 1.0f / camera.focal);
-    const VF ray_x = hn::Mul(hn::Sub(x, hn::Set(d, camera.center.x)), scale);
-    const VF ray_y = hn::Mul(hn::Sub(y, hn::Set(d, camera.center.y)), scale);
-    return hn::MulAdd(n[0], ray_x, hn::MulAdd(n[1], ray_y, n[2]));
-  }
-};
-
-Taker LoadTaker(const View& view, const Frame& frame, const TapOptions& taps, int x, int y) {
-  const F d;
-  const auto load = [&](const Plane<float>& plane) {
-    prefetch_below(plane, x, y);
-    return hn::LoadU(d, plane.row(y) + x);
-  };
-  Taker taker;
-  for (std::size_t c = 0; c < 3; ++c) taker.normal[c] = load(frame.surface.normal[c]);
-  const glm::mat3& m = view.camera.world_to_view;
-  for (int r = 0; r < 3; ++r) {
-    taker.view_normal[r] = hn::MulAdd(hn::Set(d, m[0][r]), taker.normal[0],
-                                      hn::MulAdd(hn::Set(d, m[1][r]), taker.normal[1],
-                                                 hn::Mul(hn::Set(d, m[2][r]), taker.normal[2])));
-  }
-  // Pixel x has the ray of coordinate x / 2 + 0.5 among cells.
-  const VF half = hn::Set(d, 0.5f);
-  const VF column = hn::MulAdd(hn::Iota(d, static_cast<float>(x)), half, half);
-  const VF line = hn::Set(d, 0.5f * static_cast<float>(y) + 0.5f);
-  const VF depth = load(frame.surface.depth);
-  taker.plane = hn::Mul(depth, view.Along(taker.view_normal, column, line));
-  taker.tolerance = hn::Mul(depth, hn::Set(d, taps.plane_distance));
-  prefetch_below(frame.surface.id, x, y);
-  taker.id = hn::LoadU(I(), reinterpret_cast<const std::int32_t*>(frame.surface.id.row(y)) + x);
-  for (auto& sum : taker.sum) sum = hn::Zero(d);
-  taker.weight = hn::Zero(d);
-  return taker;
-}
-
-// Weight of a cell that shows another part of the same object, against one of the same surface: it
-// counts where there is no other.
-constexpr float kOtherSurface = 1e-3f;
-
-void TakeCells(const View& view, float normal_cosine, VI x, int y, float kernel, Taker& taker) {
-  const F d;
-  const GBuffer& surface = view.cells.guides.surface;
-  const auto gather = [&](const Plane<float>& plane) {
-    return hn::GatherIndex(d, plane.row(y), x);
-  };
-  const VI id = hn::GatherIndex(I(), reinterpret_cast<const std::int32_t*>(surface.id.row(y)), x);
-  const VF half = hn::Set(d, 0.5f);
-  const VF along = view.Along(taker.view_normal, hn::Add(hn::ConvertTo(d, x), half),
-                              hn::Set(d, static_cast<float>(y) + 0.5f));
-  const VF distance = hn::Abs(hn::MulSub(gather(surface.depth), along, taker.plane));
-  VF cosine = hn::Mul(taker.normal[0], gather(surface.normal[0]));
-  cosine = hn::MulAdd(taker.normal[1], gather(surface.normal[1]), cosine);
-  cosine = hn::MulAdd(taker.normal[2], gather(surface.normal[2]), cosine);
-  const auto same =
-      hn::And(hn::Le(distance, taker.tolerance), hn::Ge(cosine, hn::Set(d, normal_cosine)));
-  const VF weight = hn::IfThenElseZero(
-      hn::RebindMask(d, hn::Eq(id, taker.id)),
-      hn::IfThenElse(same, hn::Set(d, kernel), hn::Set(d, kOtherSurface * kernel)));
-  for (std::size_t c = 0; c < 3; ++c) {
-    taker.sum[c] = hn::MulAdd(weight, gather(view.cells.mean[c]), taker.sum[c]);
-  }
-  taker.weight = hn::Add(taker.weight, weight);
-}
-
-void GiveTaker(const Taker& taker, const Plane<float>& confirmed, int x, int y,
-               const SpreadOutputs& out) {
-  const F d;
-  const auto takes = hn::And(hn::Gt(taker.weight, hn::Zero(d)),
-                             hn::Gt(hn::LoadU(d, confirmed.row(y) + x), hn::Zero(d)));
-  const VF one = hn::Set(d, 1.0f);
-  const VF scale =
-      hn::IfThenElseZero(takes, hn::Div(one, hn::IfThenElse(takes, taker.weight, one)));
-  VF given[3];
-  for (std::size_t c = 0; c < 3; ++c) {
-    prefetch_below(out.correction[c], x, y);
-    prefetch_below(out.prediction[c], x, y);
-    given[c] = hn::Mul(taker.sum[c], scale);
-    hn::StoreU(given[c], d, out.correction[c].row(y) + x);
-    float* prediction = out.prediction[c].row(y) + x;
-    hn::StoreU(hn::Add(hn::LoadU(d, prediction), given[c]), d, prediction);
-  }
-  prefetch_below(confirmed, x, y);
-  prefetch_below(out.residual, x, y);
-  const VF luminance =
-      hn::MulAdd(hn::Set(d, 0.2126f), given[0],
-                 hn::MulAdd(hn::Set(d, 0.7152f), given[1], hn::Mul(hn::Set(d, 0.0722f), given[2])));
-  float* residual = out.residual.row(y) + x;
-  hn::StoreU(hn::Sub(hn::LoadU(d, residual), luminance), d, residual);
-}
-
-// A pixel's own cell weighs 3/4 along each axis, the one beyond its nearer edge 1/4.
-void SpreadCells(const ResidualCells& cells, const CorrectionInputs& in, const Tile& tile,
-                 const SpreadOutputs& out) {
-  const F d;
-  const I di;
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  const View view{cells, cells.guides.camera};
-  const Extent extent = cells.extent();
-  const VI last = hn::Set(di, extent.width - 1), zero = hn::Zero(di), one = hn::Set(di, 1);
-  const TapOptions taps;
-  for (int y = tile.y0; y < tile.y1; ++y) {
-    const int own = y / 2, other = std::clamp(own + 2 * (y & 1) - 1, 0, extent.height - 1);
-    for (int x = tile.x0; x < tile.x1; x += lanes) {
-      Taker taker = LoadTaker(view, in.guides, taps, x, y);
-      const VI column = hn::Iota(di, x);
-      const VI near = hn::Min(hn::ShiftRight<1>(column), last);
-      const VI odd = hn::And(column, one);
-      const VI far = hn::Min(hn::Max(hn::Add(near, hn::Sub(hn::Add(odd, odd), one)), zero), last);
-      TakeCells(view, taps.normal_cosine, near, own, 9.0f / 16, taker);
-      TakeCells(view, taps.normal_cosine, far, own, 3.0f / 16, taker);
-      TakeCells(view, taps.normal_cosine, near, other, 3.0f / 16, taker);
-      TakeCells(view, taps.normal_cosine, far, other, 1.0f / 16, taker);
-      GiveTaker(taker, in.confirmed, x, y, out);
-    }
-  }
-}
-
 }  // namespace
 }  // namespace eigenlight::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -337,7 +200,6 @@ namespace eigenlight {
 
 HWY_EXPORT(TestBlocks);
 HWY_EXPORT(LoadCells);
-HWY_EXPORT(SpreadCells);
 
 BlockCounts test_blocks(const CorrectionInputs& in, const Plane<float>& residual,
                         const Tile& tile) {
@@ -347,11 +209,6 @@ BlockCounts test_blocks(const CorrectionInputs& in, const Plane<float>& residual
 void load_cells(const CorrectionInputs& in, const Planes<3>& prediction, const Tile& tile,
                 ResidualCells& cells) {
   HWY_DYNAMIC_DISPATCH(LoadCells)(in, prediction, tile, cells);
-}
-
-void spread_cells(const ResidualCells& cells, const CorrectionInputs& in, const Tile& tile,
-                  const SpreadOutputs& out) {
-  HWY_DYNAMIC_DISPATCH(SpreadCells)(cells, in, tile, out);
 }
 
 ResidualCells::ResidualCells(Extent pixels)

@@ -87,12 +87,12 @@ void EstimateVariance(const EstimateInputs& in, const Tile& tile, const Estimate
       prefetch_below(out.variance, x, y);
       const VF age = hn::LoadU(d, in.age.row(y) + x);
       const auto known = hn::Gt(age, zero);
-      const VF variance = hn::Div(hn::LoadU(d, in.variance.row(y) + x),
-                                  hn::IfThenElse(known, age, one));
+      const VF variance =
+          hn::Div(hn::LoadU(d, in.variance.row(y) + x), hn::IfThenElse(known, age, one));
       hn::StoreU(hn::IfThenElseZero(known, variance), d, out.variance.row(y) + x);
       const auto id = hn::LoadU(du, in.id.row(y) + x);
-      const auto young = hn::And(hn::RebindMask(d, hn::Ne(id, hn::Zero(du))),
-                                 hn::Lt(age, hn::Set(d, in.young)));
+      const auto young =
+          hn::And(hn::RebindMask(d, hn::Ne(id, hn::Zero(du))), hn::Lt(age, hn::Set(d, in.young)));
       const auto flag = hn::IfThenElseZero(hn::RebindMask(di, young), hn::Set(di, 1));
       hn::StoreU(hn::DemoteTo(bytes, flag), bytes, out.young.row(y) + x);
     }

@@ -71,8 +71,8 @@ RowCount LoadRow(const SumInputs& in, const Tile& segment, bool is_bounded, Row&
     found.used += hn::CountTrue(d, used);
     if (is_bounded) {
       const VF off = Luminance(residual);
-      const VF excess = hn::Mul(hn::Mul(hn::Mul(weight, off), off),
-                                hn::Set(d, 1.0f / (kOutlier * kOutlier)));
+      const VF excess =
+          hn::Mul(hn::Mul(hn::Mul(weight, off), off), hn::Set(d, 1.0f / (kOutlier * kOutlier)));
       const auto beyond = hn::Gt(excess, one);
       weight = hn::Div(weight, hn::IfThenElse(beyond, excess, one));
       found.outliers += hn::CountTrue(d, beyond);
