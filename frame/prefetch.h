@@ -1,8 +1,6 @@
 // Asking for memory before it is needed.
 #pragma once
 
-#include <hwy/cache_control.h>
-
 #include "frame/plane.h"
 
 namespace eigenlight {
@@ -12,7 +10,7 @@ namespace eigenlight {
 /// begins. To be called vector by vector between other work: many at a time only queue up.
 template <typename T>
 void prefetch_below(const Plane<T>& plane, int x, int y) {
-  if (y + 1 < plane.height()) hwy::Prefetch(plane.at(x, y + 1));
+  if (y + 1 < plane.height()) __builtin_prefetch(plane.at(x, y + 1));
 }
 
 }  // namespace eigenlight

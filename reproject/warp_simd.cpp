@@ -1,8 +1,7 @@
-#include "reproject/warp.h"
-
 #include <algorithm>
 
 #include "frame/prefetch.h"
+#include "reproject/warp.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "reproject/warp_simd.cpp"

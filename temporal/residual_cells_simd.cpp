@@ -100,9 +100,7 @@ Quad<hn::Vec<D>> LoadQuad(D d, const Plane<T>& plane, const Place& place) {
   Quad<hn::Vec<D>> quad;
   for (std::size_t row = 0; row < 2; ++row) {
     const auto* from = reinterpret_cast<const hn::TFromD<D>*>(plane.row(place.rows[row]));
-    if (place.rows[row] + 2 < plane.height()) {
-      hwy::Prefetch(plane.row(place.rows[row] + 2) + place.column);
-    }
+    if (place.inside_y) prefetch_below(plane, place.column, place.rows[row] + 1);
     hn::LoadInterleaved2(d, from + place.column, quad.at[2 * row], quad.at[2 * row + 1]);
   }
   return quad;
