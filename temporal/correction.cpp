@@ -154,29 +154,48 @@ void Correction::find_factor(const Tile& cells) {
   }
 }
 
+// Sums of f and of the cells that know something over a row of 3 x 3 windows, for the cells [x0,
+// x0 + count); nothing lies beside the image.
+void Correction::sum_windows(int x0, int y, int count, WindowRow& sums) const {
+  const Extent extent = cells_.extent();
+  const int first = std::max(x0 - 1, 0), last = std::min(x0 + count + 1, extent.width);
+  const int shift = first - (x0 - 1);
+  WindowRow columns{};
+  for (int j = std::max(y - 1, 0); j <= std::min(y + 1, extent.height - 1); ++j) {
+    const float *factor = factor_.at(first, j), *confirmed = cells_.count.at(first, j);
+    float *sum = columns.factor + shift, *known = columns.known + shift;
+    for (int i = 0; i < last - first; ++i) {
+      sum[i] += factor[i];
+      known[i] += confirmed[i] > 0.0f ? 1.0f : 0.0f;
+    }
+  }
+  const auto three = [count](const float* from, float* to) {
+    for (int i = 0; i < count; ++i) to[i] = from[i] + from[i + 1] + from[i + 2];
+  };
+  three(columns.factor, sums.factor);
+  three(columns.known, sums.known);
+}
+
 // mean <- mean f g
 void Correction::weigh_cells(const Tile& cells) {
-  const Extent extent = cells_.extent();
   constexpr int kStep = kCoefficientTile / 2;
   CoefficientRows gate;
+  WindowRow windows;
   std::int64_t corrected = 0;
   for (int y = cells.y0; y < cells.y1; ++y) {
-    const int top = std::max(y - 1, 0), bottom = std::min(y + 1, extent.height - 1);
     for (int x0 = cells.x0; x0 < cells.x1; x0 += kStep) {
-      const int x1 = std::min(x0 + kStep, cells.x1);
-      gate_.rows({2 * x0, 2 * y, 2 * x1, 2 * y + 1, 0}, 1, gate);
-      for (int x = x0; x < x1; ++x) {
-        const int left = std::max(x - 1, 0), right = std::min(x + 1, extent.width - 1);
-        float sum = 0.0f, known = 0.0f;
-        for (int j = top; j <= bottom; ++j) {
-          for (int i = left; i <= right; ++i) {
-            sum += factor_(i, j);
-            known += cells_.count(i, j) > 0.0f ? 1.0f : 0.0f;
-          }
-        }
-        const float kept = gate[0][2 * (x - x0)] * sum / std::max(known, 1.0f);
-        if (kept > 0.5f) corrected += static_cast<std::int64_t>(cells_.count(x, y));
-        for (auto& plane : cells_.mean) plane(x, y) *= kept;
+      const int count = std::min(kStep, cells.x1 - x0);
+      gate_.rows({2 * x0, 2 * y, 2 * (x0 + count), 2 * y + 1, 0}, 1, gate);
+      sum_windows(x0, y, count, windows);
+      const float* confirmed = cells_.count.at(x0, y);
+      float kept[kStep];
+      for (int i = 0; i < count; ++i) {
+        kept[i] = gate[0][2 * i] * windows.factor[i] / std::max(windows.known[i], 1.0f);
+        corrected += kept[i] > 0.5f ? static_cast<std::int64_t>(confirmed[i]) : 0;
+      }
+      for (auto& plane : cells_.mean) {
+        float* mean = plane.at(x0, y);
+        for (int i = 0; i < count; ++i) mean[i] *= kept[i];
       }
     }
   }

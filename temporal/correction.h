@@ -50,7 +50,11 @@ class Correction {
   [[nodiscard]] bool open_gates();
   void close_tile(const Tile& tile);
   void choose_cells();
+  struct WindowRow {
+    float factor[kCoefficientTile], known[kCoefficientTile];
+  };
   void find_factor(const Tile& cells);
+  void sum_windows(int x0, int y, int count, WindowRow& sums) const;
   void weigh_cells(const Tile& cells);
 
   CorrectionOptions options_;
