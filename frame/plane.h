@@ -79,11 +79,10 @@ class Plane {
   /// size.
   explicit Plane(Extent extent, int channels = 1) : extent_(extent), channels_(channels) {
     check_extent(extent);
-    EL_CHECK(channels >= 1 && channels <= 64, "a pixel holds 1 to 64 values, not {}", channels);
-    const std::size_t row =
-        static_cast<std::size_t>(extent.width) * static_cast<std::size_t>(channels) * sizeof(T);
-    stride_ = detail::apart((row + kLine - 1) / kLine) * kLine / sizeof(T);
-    const std::size_t bytes = stride_ * static_cast<std::size_t>(extent.height) * sizeof(T);
+    check_channels(channels);
+    stride_ = stride_of(channels);
+    capacity_ = stride_ * static_cast<std::size_t>(extent.height);
+    const std::size_t bytes = capacity_ * sizeof(T);
     Free free;
     if (bytes >= detail::kAlias) free = {detail::next_start() * kLine, detail::kAlias};
     auto* memory = static_cast<std::byte*>(
@@ -113,6 +112,20 @@ class Plane {
   [[nodiscard]] const T* at(int x, int y) const { return row(y) + x * channels_; }
   [[nodiscard]] T& operator()(int x, int y) { return *at(x, y); }
   [[nodiscard]] const T& operator()(int x, int y) const { return *at(x, y); }
+
+  /// Another number of values at each pixel, all 0. Allocates only where more room is needed than
+  /// there ever was. Throws std::invalid_argument on a bad number.
+  void reshape(int channels) {
+    check_channels(channels);
+    const std::size_t stride = stride_of(channels);
+    if (empty() || stride * static_cast<std::size_t>(extent_.height) > capacity_) {
+      *this = Plane(extent_, channels);
+      return;
+    }
+    channels_ = channels;
+    stride_ = stride;
+    fill(T{});
+  }
 
   /// The whole storage, padding included.
   [[nodiscard]] std::span<T> storage() { return {data_.get(), storage_size()}; }
@@ -146,13 +159,21 @@ class Plane {
     }
   };
 
+  static void check_channels(int channels) {
+    EL_CHECK(channels >= 1 && channels <= 64, "a pixel holds 1 to 64 values, not {}", channels);
+  }
+  [[nodiscard]] std::size_t stride_of(int channels) const {
+    const std::size_t row =
+        static_cast<std::size_t>(extent_.width) * static_cast<std::size_t>(channels) * sizeof(T);
+    return detail::apart((row + kLine - 1) / kLine) * kLine / sizeof(T);
+  }
   [[nodiscard]] std::size_t storage_size() const {
     return empty() ? 0 : stride_ * static_cast<std::size_t>(extent_.height);
   }
 
   Extent extent_;
   int channels_ = 1;
-  std::size_t stride_ = 0;
+  std::size_t stride_ = 0, capacity_ = 0;  // values
   std::unique_ptr<T[], Free> data_;
 };
 

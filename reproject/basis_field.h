@@ -17,13 +17,17 @@ class BasisField {
   BasisField() = default;
   /// Throws std::invalid_argument unless `bases` is in [1, kMaxBases].
   BasisField(Extent extent, int bases) : bases_(bases) {
-    EL_CHECK(bases >= 1 && bases <= kMaxBases, "bases {}: expected 1 to {}", bases, kMaxBases);
+    check_bases(bases);
     data_ = Plane<float>(extent, pixel_floats(bases));
   }
 
   /// Makes room for another number of bases; what the pixels held is lost if it differs.
+  /// Throws std::invalid_argument unless it is in [1, kMaxBases].
   void reshape(int bases) {
-    if (bases != bases_) *this = BasisField(extent(), bases);
+    if (bases == bases_) return;
+    check_bases(bases);
+    bases_ = bases;
+    data_.reshape(pixel_floats(bases));
   }
 
   /// Floats from one pixel to the next for K bases.
@@ -47,6 +51,10 @@ class BasisField {
   [[nodiscard]] const Plane<float>& data() const { return data_; }
 
  private:
+  static void check_bases(int bases) {
+    EL_CHECK(bases >= 1 && bases <= kMaxBases, "bases {}: expected 1 to {}", bases, kMaxBases);
+  }
+
   int bases_ = 1;
   Plane<float> data_;
 };

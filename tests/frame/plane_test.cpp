@@ -77,6 +77,23 @@ TEST(Plane, CopiesOnlyFromItsOwnShape) {
   EXPECT_THROW(plane.copy_from(Plane<float>()), std::invalid_argument);
 }
 
+TEST(Plane, ReshapeAllocatesOnlyForMoreThanThereEverWas) {
+  Plane<float> plane({65, 17}, 16);
+  const float* first = plane.row(0);
+  for (const int channels : {4, 13, 16}) {
+    plane.fill(3.0f);
+    plane.reshape(channels);
+    EXPECT_EQ(plane.row(0), first);
+    EXPECT_EQ(plane.channels(), channels);
+    EXPECT_EQ(plane.stride(), Plane<float>({65, 17}, channels).stride());
+    for (const float value : plane.storage()) ASSERT_EQ(value, 0.0f);
+  }
+  plane.reshape(20);
+  EXPECT_LE(plane.at(64, 16) + 20, plane.storage().data() + plane.storage().size());
+  EXPECT_THROW(plane.reshape(0), std::invalid_argument);
+  EXPECT_THROW(plane.reshape(65), std::invalid_argument);
+}
+
 TEST(Plane, RefusesSizesThatNoImageHas) {
   EXPECT_THROW(Plane<float>({0, 0}), std::invalid_argument);
   EXPECT_THROW(Plane<float>({-1, 4}), std::invalid_argument);
