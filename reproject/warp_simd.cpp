@@ -63,15 +63,17 @@ void WarpBases(const BasisField& from, const TapSegment& taps, const Tile& row, 
 using F = hn::ScalableTag<float>;
 using I = hn::RebindToSigned<F>;
 
-// Whether the taps of a vector stand side by side, all inside the image.
+// Whether the taps of a vector stand side by side, all inside the image: taps beside it have been
+// moved to its edge, where a pixel's own two may be one.
 bool IsRun(const TapSegment& taps, std::size_t i) {
   const I di;
   const auto x = hn::Load(di, taps.x[0].data() + i), y = hn::Load(di, taps.y[0].data() + i);
-  const auto first_x = hn::Set(di, taps.x[0][i]), first_y = hn::Set(di, taps.y[0][i]);
-  const auto along = hn::Eq(hn::Sub(x, hn::Iota(di, 0)), first_x);
-  const std::size_t last = i + hn::Lanes(di) - 1;
-  return taps.x[1][last] == taps.x[0][last] + 1 && taps.y[2][i] == taps.y[0][i] + 1 &&
-         hn::AllTrue(di, hn::And(along, hn::Eq(y, first_y)));
+  const auto one = hn::Set(di, 1);
+  const auto beside = hn::Eq(hn::Load(di, taps.x[1].data() + i), hn::Add(x, one));
+  const auto below = hn::Eq(hn::Load(di, taps.y[2].data() + i), hn::Add(y, one));
+  const auto along = hn::Eq(hn::Sub(x, hn::Iota(di, 0)), hn::Set(di, taps.x[0][i]));
+  const auto level = hn::Eq(y, hn::Set(di, taps.y[0][i]));
+  return hn::AllTrue(di, hn::And(hn::And(beside, below), hn::And(along, level)));
 }
 
 void WarpPlane(const Plane<float>& from, const TapSegment& taps, const Tile& row,

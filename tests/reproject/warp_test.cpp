@@ -92,5 +92,43 @@ TEST(WarpPlane, AgreesWithTheTwinAndIsZeroWithoutTaps) {
   }
 }
 
+// Taps of neighbors that moved alike, but for some that are off by one; moved to the image's edge
+// where they lie beside it.
+TapSegment shifted_taps(Extent extent, const Tile& row, glm::ivec2 shift, std::uint32_t seed) {
+  TapSegment taps = random_taps(extent, seed);
+  for (int i = 0; i < kSegment; ++i) {
+    PixelRandom random(seed, i, 1);
+    const int left = row.x0 + i + shift.x - (random.uniform() < 0.1f ? 1 : 0);
+    const int top = row.y0 + shift.y - (random.uniform() < 0.02f ? 1 : 0);
+    for (int t = 0; t < 4; ++t) {
+      const auto at = static_cast<std::size_t>(t), lane = static_cast<std::size_t>(i);
+      taps.x[at][lane] = std::clamp(left + t % 2, 0, extent.width - 1);
+      taps.y[at][lane] = std::clamp(top + t / 2, 0, extent.height - 1);
+    }
+  }
+  return taps;
+}
+
+TEST(WarpPlane, AgreesWithTheTwinWhereNeighborsMoveAlikeOnEveryTarget) {
+  for (const Extent extent : kSweepExtents) {
+    const Plane<float> from = random_plane(extent, 9, 0.5f, 2.0f);
+    for (int seed = 0; seed < 25; ++seed) {
+      const int y = seed % 2 == 0 ? extent.height - 1 : 0;
+      const int x0 = extent.width > kSegment && seed % 3 == 0 ? kSegment : 0;
+      const Tile row{x0, y, std::min(extent.width, x0 + kSegment), y + 1, 0};
+      const TapSegment taps =
+          shifted_taps(extent, row, {seed % 5 - 2, seed / 5 - 2}, static_cast<std::uint32_t>(seed));
+      for_each_target([&] {
+        Plane<float> to(extent);
+        warp_plane(from, taps, row, to);
+        for (int x = row.x0; x < row.x1; ++x) {
+          const auto i = static_cast<std::size_t>(x - row.x0);
+          ASSERT_NEAR(to(x, y), reference::warped(taps, i, from), 1e-6) << x << ", " << y;
+        }
+      });
+    }
+  }
+}
+
 }  // namespace
 }  // namespace eigenlight
