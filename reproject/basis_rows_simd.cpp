@@ -94,6 +94,14 @@ struct RowTable {
   }
 };
 
+// Asks for the group of pixels under the one that starts at (x, y): rows of a tile are too short
+// for the hardware to foresee the next one.
+void PrefetchGroup(const BasisField& field, int x, int y) {
+  if (y + 1 >= field.extent().height) return;
+  const float* below = field.pixel(x, y + 1);
+  for (int j = 0; j < kGroup * field.pixel_floats(); j += 16) hwy::Prefetch(below + j);
+}
+
 // A group of pixels at a time; a last one that is not whole reads its first pixel again.
 void Load(const BasisField& field, const Tile& row, BasisRows& rows) {
   const D tag;
@@ -101,10 +109,8 @@ void Load(const BasisField& field, const Tile& row, BasisRows& rows) {
   const RowTable table(rows, spare, field.bases());
   const int floats = field.pixel_floats(), count = row.x1 - row.x0;
   const float* in = field.pixel(row.x0, row.y0);
-  const std::size_t below = row.y0 + 1 < field.extent().height ? field.data().stride() : 0;
   for (int i = 0; i < count; i += kGroup) {
-    // Rows of a tile are too short for the hardware to foresee the next one.
-    for (int j = 0; j < kGroup * floats; j += 16) hwy::Prefetch(in + i * floats + j + below);
+    PrefetchGroup(field, row.x0 + i, row.y0);
     const float* pixel[8];
     for (int n = 0; n < kGroup; ++n) pixel[n] = in + (i + (i + n < count ? n : 0)) * floats;
     for (int j = 0; j < floats; j += 4) {
@@ -134,10 +140,9 @@ void Save(const BasisRows& rows, const Tile& row, BasisField& field) {
   const RowTable table(const_cast<BasisRows&>(rows), const_cast<float*>(kZero), field.bases());
   const int floats = field.pixel_floats(), count = row.x1 - row.x0;
   float* out = field.pixel(row.x0, row.y0);
-  const std::size_t below = row.y0 + 1 < field.extent().height ? field.data().stride() : 0;
   int i = 0;
   for (; i + kGroup <= count; i += kGroup) {
-    for (int j = 0; j < kGroup * floats; j += 16) hwy::Prefetch(out + i * floats + j + below);
+    PrefetchGroup(field, row.x0 + i, row.y0);
     // A constant count leaves no tests in the loop.
     SaveGroup(table, floats, i, kGroup, out + i * floats);
   }

@@ -98,15 +98,15 @@ struct ScatteredCells {
   }
 };
 
-#if HWY_TARGET != HWY_SCALAR
 // Where a whole vector from the column left of the first pixel's lies in the image: that one load
-// holds the cells of all lanes.
+// holds the cells of all lanes, if they are four or more.
 struct InnerCells {
   VI own, other;  // among the loaded
   int first;
 
   static bool fit(int x, int width) {
-    return x >= 2 && x / 2 - 1 + static_cast<int>(hn::Lanes(I())) <= width;
+    const int lanes = static_cast<int>(hn::Lanes(I()));
+    return lanes >= 4 && x >= 2 && x / 2 - 1 + lanes <= width;
   }
   explicit InnerCells(int x) : first(x / 2 - 1) {
     const I d;
@@ -124,7 +124,6 @@ struct InnerCells {
     return hn::TableLookupLanes(hn::LoadU(d, row + first), index);
   }
 };
-#endif
 
 template <Column kColumn, typename Cells>
 HWY_INLINE void TakeCells(const View& view, float normal_cosine, const Cells& at, int y,
@@ -156,8 +155,9 @@ HWY_INLINE void TakeCells(const View& view, float normal_cosine, const Cells& at
 
 // A pixel's own cell weighs 3/4 along each axis, the one beyond its nearer edge 1/4.
 template <typename Cells>
-HWY_INLINE void TakeAround(const View& view, const Cells& at, int own, int other, Taker& taker) {
-  const float cosine = TapOptions().normal_cosine;
+HWY_INLINE void TakeAround(const View& view, const TapOptions& taps, const Cells& at, int own,
+                           int other, Taker& taker) {
+  const float cosine = taps.normal_cosine;
   TakeCells<Column::kOwn>(view, cosine, at, own, 9.0f / 16, taker);
   TakeCells<Column::kOther>(view, cosine, at, own, 3.0f / 16, taker);
   TakeCells<Column::kOwn>(view, cosine, at, other, 3.0f / 16, taker);
@@ -195,19 +195,16 @@ void SpreadCells(const ResidualCells& cells, const CorrectionInputs& in, const T
   const int lanes = static_cast<int>(hn::Lanes(F()));
   const View view{cells, cells.guides.camera};
   const Extent extent = cells.extent();
+  const TapOptions taps;
   for (int y = tile.y0; y < tile.y1; ++y) {
     const int own = y / 2, other = std::clamp(own + 2 * (y & 1) - 1, 0, extent.height - 1);
     for (int x = tile.x0; x < tile.x1; x += lanes) {
-      Taker taker = LoadTaker(view, in.guides, {}, x, y);
-#if HWY_TARGET != HWY_SCALAR
+      Taker taker = LoadTaker(view, in.guides, taps, x, y);
       if (InnerCells::fit(x, extent.width)) {
-        TakeAround(view, InnerCells(x), own, other, taker);
+        TakeAround(view, taps, InnerCells(x), own, other, taker);
       } else {
-        TakeAround(view, ScatteredCells(x, extent.width), own, other, taker);
+        TakeAround(view, taps, ScatteredCells(x, extent.width), own, other, taker);
       }
-#else
-      TakeAround(view, ScatteredCells(x, extent.width), own, other, taker);
-#endif
       GiveTaker(taker, in.confirmed, x, y, out);
     }
   }
