@@ -46,7 +46,7 @@ bool same_places(const Lights& a, const Lights& b) {
 void RenderOptions::validate() const {
   check_extent(extent);
   EL_CHECK(spp >= 1 && spp <= 65536, "spp {}: expected 1 to 65536", spp);
-  EL_CHECK(direct_spp >= 1 && direct_spp <= 65536, "direct_spp {}: expected 1 to 65536",
+  EL_CHECK(direct_spp >= 0 && direct_spp <= 65536, "direct_spp {}: expected 0 to 65536",
            direct_spp);
   EL_CHECK(bounces >= 1 && bounces <= 64, "bounces {}: expected 1 to 64", bounces);
 }
@@ -138,7 +138,7 @@ void LiveSource::State::draw(const Tile& tile, int frame, const Count& count, Pl
 
 glm::vec3 LiveSource::State::direct(glm::ivec2 at, int frame, RayCounters& tally) const {
   const GuideHit& guide = hits(at.x, at.y);
-  if (guide.kind != GuideHit::Kind::kSurface) return glm::vec3(0.0f);
+  if (guide.kind != GuideHit::Kind::kSurface || options.direct_spp == 0) return glm::vec3(0.0f);
   const std::uint32_t k = key(at, kDirectStream, frame);
   FiniteMean mean;
   for (int i = 0; i < options.direct_spp; ++i) {
@@ -223,6 +223,7 @@ PictureStats LiveSource::picture(const AntialiasOptions& options, const Frame& f
   const State& s = *state_;
   EL_CHECK(s.position > 0 && frame.index == s.frames[s.position - 1],
            "picture: frame {} is not the one that was delivered last", frame.index);
+  EL_CHECK(s.options.direct_spp > 0, "picture: no samples of direct light");
   const World world{s.geometry, s.surfaces, s.lights};
   const GuideMap guides{frame, s.hits, indirect};
   return render_picture(

@@ -14,7 +14,7 @@ namespace eigenlight {
 struct RenderOptions {
   Extent extent{640, 360};
   int spp = 3;             ///< [1, 65536] samples of indirect light per pixel
-  int direct_spp = 8;      ///< [1, 65536] light samples of direct light per pixel
+  int direct_spp = 8;      ///< [0, 65536] light samples of direct light; 0: `direct` is not wanted
   int bounces = 3;         ///< [1, 64] bounces of indirect light after the first hit
   std::uint32_t seed = 0;  ///< sequences of different seeds are independent
 
@@ -38,7 +38,8 @@ class LiveSource final : public FrameSource {
 
   /// The antialiased picture of the frame that next() delivered last, with `indirect` (filtered,
   /// over albedo) in place of its own; render_picture(). Changes nothing of `frame`. Throws
-  /// std::invalid_argument if `frame` is another one, planes differ in size, or the mode is kNone.
+  /// std::invalid_argument if `frame` is another one, planes differ in size, the mode is kNone, or
+  /// direct_spp is 0.
   PictureStats picture(const AntialiasOptions& options, const Frame& frame,
                        const Planes<3>& indirect, Planes<3>& out);
 

@@ -14,10 +14,6 @@ constexpr float kPi = std::numbers::pi_v<float>;
 // a distance, far below any gap that matters.
 constexpr float kShort = 1e-4f;
 
-glm::vec3 ray_origin(const SurfacePoint& point) {
-  return point.position + point.offset * point.geometric;
-}
-
 }  // namespace
 
 // False where the direction is under the surface: an interpolated normal leans over that far. Such
@@ -29,7 +25,7 @@ bool PathTracer::sample_ray(const SurfacePoint& point, Sampler& sampler, Bounce&
   const float height = std::sqrt(1.0f - u.x);
   const glm::vec3 local(radius * std::cos(phi), radius * std::sin(phi), height);
   bounce = Bounce();
-  bounce.ray = {ray_origin(point), around(point.normal, local)};
+  bounce.ray = {point.origin, around(point.normal, local)};
   bounce.pdf = height / kPi;
   return glm::dot(bounce.ray.direction, point.geometric) > 0.0f && bounce.pdf > 0.0f;
 }
@@ -81,8 +77,7 @@ glm::vec3 PathTracer::shadowed(const SurfacePoint& point, const LightSample& sam
   if (!(cosine > 0.0f) || !(glm::dot(sample.direction, point.geometric) > 0.0f)) {
     return glm::vec3(0.0f);
   }
-  const Ray ray{ray_origin(point), sample.direction, 0.0f, sample.distance * (1.0f - kShort),
-                aim.quick};
+  const Ray ray{point.origin, sample.direction, 0.0f, sample.distance * (1.0f - kShort), aim.quick};
   ++rays;
   if (world_.geometry.occluded(ray) || world_.lights.occluded(ray)) return glm::vec3(0.0f);
   const float weight = power_heuristic(sample.pdf, aim.weight_against * cosine / kPi);
@@ -99,7 +94,7 @@ glm::vec3 PathTracer::aim(const SurfacePoint& point, Sampler& sampler, bool quic
   }
   if (world_.lights.has_local()) {
     const float pick = sampler.next_1d();
-    const auto sample = world_.lights.sample_local(ray_origin(point), pick, sampler.next_2d());
+    const auto sample = world_.lights.sample_local(point.origin, pick, sampler.next_2d());
     if (sample) sum += shadowed(point, *sample, {1.0f, quick}, rays);
   }
   return sum;
@@ -115,7 +110,7 @@ std::uint8_t PathTracer::lit_by(const SurfacePoint& point, std::int64_t& rays) c
   std::uint8_t lit = 0;
   if (world_.lights.has_suns() && reaches(world_.lights.sample_sun(point.normal, middle))) lit |= 1;
   if (world_.lights.has_local() &&
-      reaches(world_.lights.sample_local(ray_origin(point), middle.x, middle))) {
+      reaches(world_.lights.sample_local(point.origin, middle.x, middle))) {
     lit |= 2;
   }
   return lit;

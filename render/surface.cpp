@@ -10,6 +10,11 @@ namespace {
 // float ulps, twenty times the error of origin + t * direction.
 constexpr float kOffset = 1e-5f;
 
+// Rays start on the ray that found the surface, where nothing stands: along the normal alone, a
+// point in a corner may come to lie in the wall beside. A grazing ray is followed back by at most
+// one over this many offsets, the rest of the height is along the normal.
+constexpr float kLeastCosine = 0.1f;
+
 glm::vec2 interpolate(const std::array<glm::vec2, 3>& uv, const Hit& hit) {
   return (1.0f - hit.u - hit.v) * uv[0] + hit.u * uv[1] + hit.v * uv[2];
 }
@@ -96,8 +101,12 @@ SurfacePoint SurfaceTable::point(const Ray& ray, const Hit& hit, const glm::vec3
   const glm::vec3 geometric = glm::dot(hit.normal, ray.direction) > 0.0f ? -hit.normal : hit.normal;
   const float reach =
       std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)}) + hit.t;
+  const float height = kOffset * reach;
+  const float cosine = -glm::dot(geometric, ray.direction);
+  const float back = std::min(height / std::max(cosine, kLeastCosine), hit.t);
+  const glm::vec3 origin = position - back * ray.direction + (height - back * cosine) * geometric;
   return {position, geometric, shading_normal(hit, geometric, ray.direction),
-          look_of_[hit.instance]->base_color, kOffset * reach};
+          look_of_[hit.instance]->base_color, origin};
 }
 
 float SurfaceTable::footprint(const Ray& ray, const Hit& hit, float spread) const {

@@ -18,7 +18,7 @@ struct SurfacePoint {
   glm::vec3 geometric{0.0f};  ///< unit normal of the triangle, towards the side it is seen from
   glm::vec3 normal{0.0f};     ///< unit, interpolated; `geometric` where that one faces away
   glm::vec3 albedo{0.0f};
-  float offset = 0.0f;  ///< how far a ray must start off the surface not to meet it again
+  glm::vec3 origin{0.0f};  ///< where rays off the surface start, so as not to meet it again
 };
 
 /// Compact copies of what hits read: one record a triangle, prefiltered textures.

@@ -63,7 +63,8 @@ std::uint64_t hash_rows(const Planes<3>& planes) {
 
 std::uint64_t renderer_hash(const AnimatedScene& animated, const RenderOptions& options) {
   RenderOptions probe = options;
-  probe.spp = probe.direct_spp = 1;
+  probe.spp = 1;
+  probe.direct_spp = 0;
   LiveSource source(animated.scene, animated.animation, probe, {0});
   Frame frame;
   if (!source.next(frame)) throw std::logic_error("a source of one frame has one");
@@ -98,7 +99,7 @@ void ReferenceCache::render(Half half, const std::vector<int>& frames,
   RenderOptions options;
   options.extent = identity_.extent;
   options.spp = identity_.spp;
-  options.direct_spp = 1;  // direct light is not kept
+  options.direct_spp = 0;  // direct light is not kept
   options.bounces = identity_.bounces;
   options.seed = kReferenceSeeds | (2 * identity_.seed + (half == Half::kB ? 1U : 0U));
   LiveSource source(animated.scene, animated.animation, options, frames);

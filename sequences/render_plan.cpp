@@ -22,6 +22,15 @@ constexpr std::uint32_t kReferenceSeeds = 0x80000000U;
 // times the default is enough for a picture to look at.
 constexpr int kReferenceDirectSpp = 64;
 
+// Samples of direct light, which is half of a frame's rays at 3 spp: only for layers that show it.
+int direct_samples(const std::vector<Layer>& layers, bool is_reference, int usual) {
+  const bool shown = std::any_of(layers.begin(), layers.end(), [](Layer layer) {
+    return layer == Layer::kColor || layer == Layer::kDirect;
+  });
+  if (!shown) return 0;
+  return is_reference ? kReferenceDirectSpp : usual;
+}
+
 // Refuses early what would end in the kernel killing the process. Two frames, output and the
 // encoded file take about 350 bytes a pixel, a basis twice three floats.
 void check_memory(Extent extent, int bases) {
@@ -93,7 +102,7 @@ RenderPlan make_plan(const RenderSettings& settings) {
   render.extent = parse_size(settings.size);
   check_memory(render.extent, plan.bases);
   render.spp = settings.spp.value_or(is_reference ? kReferenceSpp : render.spp);
-  if (is_reference) render.direct_spp = kReferenceDirectSpp;
+  render.direct_spp = direct_samples(plan.layers, is_reference, render.direct_spp);
   render.bounces = settings.bounces;
   render.seed = static_cast<std::uint32_t>(settings.seed) | (is_reference ? kReferenceSeeds : 0U);
   check_range("spp", render.spp, 1, 65536);

@@ -84,7 +84,7 @@ PyramidExample frame_example(const std::string& scene_name, int number, int radi
   // The middle of a picture as large as people render, so that surfaces span as many pixels.
   const Extent extent{kFrameParts * side, kFrameParts * side};
   const auto animation = make_flythrough(scene, Perturbation::kNone, extent);
-  LiveSource source(scene, *animation, {.extent = extent, .spp = 1, .direct_spp = 1}, {number});
+  LiveSource source(scene, *animation, {.extent = extent, .spp = 1, .direct_spp = 0}, {number});
   Frame frame;
   if (!source.next(frame)) throw std::logic_error("a source of one frame has none");
   Plane<float> attributes({side, side}, GlobalIlluminationEdge::kAttributes);

@@ -311,6 +311,25 @@ TEST(LiveSource, NonFiniteSamplesAreCountedAndLeftOut) {
   EXPECT_LT(unknown, static_cast<int>(o.extent.pixels()));
 }
 
+// Who does not look at direct light does not pay for it, and gets the same of all else.
+TEST(LiveSource, DirectLightThatNobodyWantsCostsNoRays) {
+  const Scene scene = moving_scene();
+  RenderOptions o = small_options();
+  const FunctionAnimation animation = moving_animation(scene, o.extent);
+  LiveSource with(scene, animation, o, {0, 1});
+  o.direct_spp = 0;
+  LiveSource without(scene, animation, o, {0, 1});
+  const Frame a = nth(with, 1), b = nth(without, 1);
+  EXPECT_LT(b.rays, a.rays - a.extent().pixels());
+  EXPECT_EQ(test::mean(b.direct), glm::dvec3(0.0));
+  EXPECT_TRUE(test::same_bits(a.indirect, b.indirect));
+  EXPECT_TRUE(test::same_bits(a.emission, b.emission));
+  EXPECT_TRUE(test::same_bits(a.motion, b.motion));
+  Planes<3> out;
+  EXPECT_THROW(without.picture({.mode = AntialiasMode::kLookup}, b, b.indirect, out),
+               std::invalid_argument);
+}
+
 TEST(LiveSource, BadOptionsAreNamed) {
   const auto message = [](const RenderOptions& o) -> std::string {
     try {
@@ -329,7 +348,7 @@ TEST(LiveSource, BadOptionsAreNamed) {
   EXPECT_EQ(message(o), "bounces 65: expected 1 to 64");
   o = {};
   o.direct_spp = -1;
-  EXPECT_EQ(message(o), "direct_spp -1: expected 1 to 65536");
+  EXPECT_EQ(message(o), "direct_spp -1: expected 0 to 65536");
 }
 
 }  // namespace

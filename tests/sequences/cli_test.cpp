@@ -257,6 +257,20 @@ TEST_F(CliTest, AntialiasingChangesTheColorAlone) {
   EXPECT_THAT(other.err, HasSubstr("of another run: antialias is sraa there, lookup here"));
 }
 
+TEST_F(CliTest, DirectLightIsLeftOutWhereNoLayerShowsIt) {
+  EXPECT_EQ(render("all", {"--frames", "0-1"}).status, 0);
+  EXPECT_EQ(render("some", {"--frames", "0-1", "--layers", "indirect,noisy"}).status, 0);
+  const auto rays = [&](const std::string& run) {
+    const std::string log = bytes(run + "/frames.jsonl");
+    return nlohmann::json::parse(log.substr(0, log.find('\n'))).at("rays").get<std::int64_t>();
+  };
+  EXPECT_LT(rays("some"), 0.75 * static_cast<double>(rays("all")));
+  const ExrReader all(dir_ / "all/frame.0001.exr"), some(dir_ / "some/frame.0001.exr");
+  for (const char* layer : {"indirect", "noisy"}) {
+    EXPECT_TRUE(planes_equal(some.read_planes<3>(layer), all.read_planes<3>(layer))) << layer;
+  }
+}
+
 TEST(QuoteForShell, QuotesWhatAShellWouldSplit) {
   EXPECT_EQ(quote_for_shell("out/a-1.exr"), "out/a-1.exr");
   EXPECT_EQ(quote_for_shell("my scene"), "'my scene'");
