@@ -244,7 +244,12 @@ void EigenDenoiser::shorten_memory(const Tile& tile) {
 }
 
 void EigenDenoiser::update() {
-  bases_.reshape(std::max(memory_.active(), newborn_ + 1));
+  const int bases = std::max(memory_.active(), newborn_ + 1);
+  // In place: what is written over need not be fetched first.
+  const bool in_place = bases == warped_bases_.bases();
+  if (in_place) std::swap(bases_, warped_bases_);
+  bases_.reshape(bases);
+  const BasisField& history = in_place ? bases_ : warped_bases_;
   for_each_strip(tiles_, [&](const Strip& strip) {
     innovation_tile({residual_, confirmed_, old_age_, samples_}, options_.innovation, strip.area,
                     {new_age_, variance_});
@@ -258,19 +263,19 @@ void EigenDenoiser::update() {
       }
     }
     for_each_segment(tiles_, strip, [&](const Tile& row) {
-      if (!is_empty(row)) update_row(row);
+      if (!is_empty(row)) update_row(history, row);
     });
   });
   if (newborn_ > 0) memory_.born(newborn_);
   retire_bases();
 }
 
-void EigenDenoiser::update_row(const Tile& row) {
+void EigenDenoiser::update_row(const BasisField& history, const Tile& row) {
   const Planes<3>* correction =
       correction_.is_open(row.index) ? &correction_.correction() : nullptr;
   update_tile({coefficients_, learning_, prediction_, correction, light_, samples_, old_age_,
                new_age_, memory_.active(), newborn_},
-              row, warped_bases_, {bases_, output_});
+              row, history, {bases_, output_});
   estimate_variance({frame_.surface.id, new_age_, variance_, options_.young}, row,
                     {output_variance_, young_});
 }
@@ -288,15 +293,15 @@ void EigenDenoiser::clear_tile(const Tile& tile) {
 
 // Clears the bases that no tile uses any more.
 void EigenDenoiser::retire_bases() {
-  for (const int k : memory_.retire()) {
-    for_each_tile(tiles_, [&](const Tile& tile) {
-      for (int y = tile.y0; y < tile.y1; ++y) {
-        for (int x = tile.x0; x < tile.x1; ++x) {
-          for (int c = 0; c < 3; ++c) bases_.value(x, y, c, k) = 0.0f;
-        }
+  const std::vector<int> retired = memory_.retire();
+  if (retired.empty()) return;
+  for_each_segment(tiles_, [&](const Tile& row) {
+    for (int x = row.x0; x < row.x1; ++x) {
+      for (const int k : retired) {
+        for (int c = 0; c < 3; ++c) bases_.value(x, row.y0, c, k) = 0.0f;
       }
-    });
-  }
+    }
+  });
 }
 
 void EigenDenoiser::filter() {

@@ -75,7 +75,7 @@ class EigenDenoiser final : public Denoiser {
   void retire_bases();
   void shorten_memory(const Tile& tile);
   void update();
-  void update_row(const Tile& row);
+  void update_row(const BasisField& history, const Tile& row);
   void clear_tile(const Tile& tile);
   void filter();
   void fill_young();
