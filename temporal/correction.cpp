@@ -46,7 +46,7 @@ Correction::Correction(Extent extent, const CorrectionOptions& options)
   options.validate();
 }
 
-double Correction::process(const CorrectionInputs& in, Planes<3>& prediction,
+double Correction::process(const CorrectionInputs& in, const Planes<3>& prediction,
                            Plane<float>& residual) {
   for_each_tile(gate_.grid(), [&](const Tile& tile) {
     blocks_[static_cast<std::size_t>(tile.index)] = test_blocks(in, residual, tile);
@@ -72,7 +72,7 @@ double Correction::process(const CorrectionInputs& in, Planes<3>& prediction,
   std::fill(corrected_.begin(), corrected_.end(), 0);
   on(wanted_, [&](const Tile& cells) { weigh_cells(cells); });
   for_each_segment(gate_.grid(), [&](const Tile& row) {
-    if (is_open(row.index)) spread_cells(cells_, in, row, {correction_, prediction, residual});
+    if (is_open(row.index)) spread_cells(cells_, in, row, {correction_, residual});
   });
 
   std::int64_t confirmed = 0;
@@ -107,7 +107,7 @@ bool Correction::open_gates() {
   return skipped_ < static_cast<std::int64_t>(grid.extent().pixels());
 }
 
-// Forgets what an earlier frame added.
+// Forgets what an earlier frame lacked.
 void Correction::close_tile(const Tile& tile) {
   if (is_open(tile.index) || was_open_[static_cast<std::size_t>(tile.index)] == 0) return;
   for (int y = tile.y0; y < tile.y1; ++y) {

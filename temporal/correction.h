@@ -23,8 +23,8 @@ struct CorrectionOptions {
 /// q, and
 ///   correction = m f g,   f = max(0, 1 - significance * q / luminance(m)^2), averaged over
 ///   those of 3 x 3 cells that have a confirmed pixel,
-/// goes to the prediction. A light that changes in a way no basis knows yet is so followed within
-/// the frame, by its spatial smoothness instead of its history.
+/// is what the prediction lacks. A light that changes in a way no basis knows yet is so followed
+/// within the frame, by its spatial smoothness instead of its history.
 ///
 /// g in [0, 1] opens where light does change: it grows with the share of 8 x 8 blocks whose mean
 /// residual exceeds three of its standard deviations, over a coefficient tile and its neighbors,
@@ -33,12 +33,13 @@ class Correction {
  public:
   Correction(Extent extent, const CorrectionOptions& options);
 
-  /// Adds to `prediction`, subtracts from `residual` (luminance of u - prediction), and leaves what
-  /// it added in correction(). Returns the share of confirmed pixels corrected by more than half.
-  double process(const CorrectionInputs& in, Planes<3>& prediction, Plane<float>& residual);
-  /// Zero where nothing was added.
+  /// Leaves what is to be added to `prediction` in correction(), and subtracts it from `residual`
+  /// (luminance of u - prediction). Returns the share of confirmed pixels corrected by more than
+  /// half.
+  double process(const CorrectionInputs& in, const Planes<3>& prediction, Plane<float>& residual);
+  /// Zero where the prediction lacks nothing.
   [[nodiscard]] const Planes<3>& correction() const { return correction_; }
-  /// Whether the last frame added anything in a tile of the coefficients' grid.
+  /// Whether the last frame may have corrected anything in a tile of the coefficients' grid.
   [[nodiscard]] bool is_open(int tile) const { return open_[static_cast<std::size_t>(tile)] != 0; }
   /// g of a tile of the coefficients' grid in the last frame, [0, 1], whether filtering is gated or
   /// not: how surely its light changed in a way no basis knows.

@@ -180,7 +180,7 @@ void EigenDenoiser::predict(bool resampled) {
       count.fresh += found.fresh;
       count.non_finite += found.non_finite;
       predict_tile(warped_bases_, coefficients_, light_, row,
-                   {prediction_, residual_, confirmed_, old_age_, variance_});
+                   {prediction_, residual_, confirmed_, variance_});
     });
     fireflies_.count({prediction_, old_age_, samples_, variance_}, {light_, residual_, confirmed_},
                      strip.area);

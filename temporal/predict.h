@@ -10,7 +10,6 @@ struct PredictOutputs {
   Planes<3>& prediction;    ///< sum_k c_k V_k; 0 without history
   Plane<float>& residual;   ///< luminance of u - prediction; 0 where `confirmed` is 0
   Plane<float>& confirmed;  ///< 1 where there is history and u is finite, else 0
-  Plane<float>& age;        ///< of the history; 0 where there is none
   Plane<float>& variance;   ///< of one frame's luminance: in, of the history; out, of this light
 };
 

@@ -50,16 +50,14 @@ void PredictVector(const BasisRows& rows, int bases, const CoefficientRows& coef
     const VF off = hn::Sub(hn::LoadU(d, light[c].row(y) + x), sum);
     residual = hn::MulAdd(hn::Set(d, weights[c]), off, residual);
   }
-  for (const Plane<float>* plane : {&out.residual, &out.confirmed, &out.age, &out.variance}) {
+  for (const Plane<float>* plane : {&out.residual, &out.confirmed, &out.variance}) {
     prefetch_below(*plane, x, y);
   }
-  const VF age = hn::Load(d, rows.age + i);
+  const auto known = hn::Gt(hn::Load(d, rows.age + i), hn::Zero(d));
   // False of NaN.
-  const auto confirmed =
-      hn::And(hn::Gt(age, hn::Zero(d)), hn::Le(hn::Abs(residual), hn::Set(d, kLargest)));
+  const auto confirmed = hn::And(known, hn::Le(hn::Abs(residual), hn::Set(d, kLargest)));
   hn::StoreU(hn::IfThenElseZero(confirmed, residual), d, out.residual.row(y) + x);
   hn::StoreU(hn::IfThenElseZero(confirmed, hn::Set(d, 1.0f)), d, out.confirmed.row(y) + x);
-  hn::StoreU(age, d, out.age.row(y) + x);
   float* variance = out.variance.row(y) + x;
   hn::StoreU(FollowGain(hn::LoadU(d, variance), hn::Load(d, coefficient[0] + i)), d, variance);
 }

@@ -50,7 +50,6 @@ void load_cells(const CorrectionInputs& in, const Planes<3>& prediction, const T
 
 struct SpreadOutputs {
   Planes<3>& correction;   ///< set
-  Planes<3>& prediction;   ///< plus the correction
   Plane<float>& residual;  ///< minus its luminance
 };
 

@@ -175,11 +175,8 @@ void GiveTaker(const Taker& taker, const Plane<float>& confirmed, int x, int y,
   VF given[3];
   for (std::size_t c = 0; c < 3; ++c) {
     prefetch_below(out.correction[c], x, y);
-    prefetch_below(out.prediction[c], x, y);
     given[c] = hn::Mul(taker.sum[c], scale);
     hn::StoreU(given[c], d, out.correction[c].row(y) + x);
-    float* prediction = out.prediction[c].row(y) + x;
-    hn::StoreU(hn::Add(hn::LoadU(d, prediction), given[c]), d, prediction);
   }
   prefetch_below(confirmed, x, y);
   prefetch_below(out.residual, x, y);

@@ -98,10 +98,10 @@ void UpdateTile(const UpdateInputs& in, const Tile& tile, const BasisField& from
           prefetch_below(planes[c], tile.x0 + i, y);
           return hn::LoadU(d, planes[c].row(y) + tile.x0 + i);
         };
-        const VF residual = hn::Sub(load(in.light), load(in.prediction));
         const VF correction = in.correction == nullptr
                                   ? hn::Zero(d)
                                   : hn::IfThenElseZero(step.known, load(*in.correction));
+        const VF residual = hn::Sub(load(in.light), hn::Add(load(in.prediction), correction));
         const VF estimate = UpdateBases(in, step, residual, correction, static_cast<int>(c), i,
                                         from, out.bases, row);
         prefetch_below(out.estimate[c], tile.x0 + i, y);

@@ -8,8 +8,9 @@
 //   reproject    motion 2, depth 1, normal 3, id 1; before: depth 1,          P, variance 1
 //                normal 3, id 1, P, variance 1
 //   tile_sums    P, light 3, variance 1                                       -
-//   predict      P, light 3                                                   prediction 3,
-//                                                                             residual, flag, age
+//   predict      P, light 3, variance                                         prediction 3,
+//   residual,
+//                                                                             flag, variance
 //   innovation   residual, flag, age, samples, variance                       age, variance
 //   update       P, prediction 3, correction 3, light 3, samples, 2 ages      P, estimate 3
 //   temporal     P, variance, light 3, motion 2, depth 1, G-buffer (normal,   P, variance,
@@ -61,6 +62,7 @@ struct Stages {
     copy_planes(current.indirect, light);
     variance.fill(0.05f);
     samples.fill(1.0f);
+    age.fill(8.0f);
     new_age.fill(9.0f);
     for_each_tile(tiles, [&](const Tile& tile) { fill_history(tile); });
     reproject();
@@ -105,7 +107,7 @@ struct Stages {
   void predict() {
     for_each_tile(tiles, [&](const Tile& tile) {
       predict_tile(warped, coefficients, light, tile,
-                   {prediction, residual, confirmed, age, predicted_variance});
+                   {prediction, residual, confirmed, predicted_variance});
     });
   }
   void test_innovation() {
@@ -159,7 +161,7 @@ void predict(benchmark::State& state) {
   const Setting setting(state);
   Stages stages(setting);
   if (!is_sound(stages.prediction, setting.extent)) return state.SkipWithError("no prediction");
-  measure(state, setting.extent, {basis_bytes(setting.bases) + 3 * kFloat, 6 * kFloat},
+  measure(state, setting.extent, {basis_bytes(setting.bases) + 4 * kFloat, 6 * kFloat},
           timed([&] { stages.predict(); }));
 }
 

@@ -22,21 +22,17 @@ CoefficientField random_coefficients(Extent extent, int bases) {
 
 struct Result {
   explicit Result(Extent extent)
-      : prediction(make_planes<3>(extent)),
-        residual(extent),
-        confirmed(extent),
-        age(extent),
-        variance(extent) {
+      : prediction(make_planes<3>(extent)), residual(extent), confirmed(extent), variance(extent) {
     variance.fill(0.5f);
   }
   void run(const BasisField& bases, const CoefficientField& coefficients, const Frame& frame) {
     for (int i = 0; i < coefficients.grid().count(); ++i) {
       predict_tile(bases, coefficients, frame.indirect, coefficients.grid().tile(i),
-                   {prediction, residual, confirmed, age, variance});
+                   {prediction, residual, confirmed, variance});
     }
   }
   Planes<3> prediction;
-  Plane<float> residual, confirmed, age, variance;
+  Plane<float> residual, confirmed, variance;
 };
 
 TEST(Predict, AgreesWithTheTwinOnEveryTarget) {
@@ -58,7 +54,6 @@ TEST(Predict, AgreesWithTheTwinOnEveryTarget) {
             }
             ASSERT_EQ(result.confirmed(x, y), twin.confirmed ? 1.0f : 0.0f) << x << ", " << y;
             ASSERT_NEAR(result.residual(x, y), twin.residual, 5e-6) << x << ", " << y;
-            ASSERT_EQ(result.age(x, y), field.age(x, y));
             ASSERT_NEAR(result.variance(x, y), 0.5 * twin.variance_factor, 1e-6);
           }
         }
@@ -79,7 +74,6 @@ TEST(Predict, WithoutHistoryIsZeroAndUnconfirmed) {
       EXPECT_EQ(result.prediction[1](x, y), 0.0f);
       EXPECT_EQ(result.residual(x, y), 0.0f);
       EXPECT_EQ(result.confirmed(x, y), 0.0f);
-      EXPECT_EQ(result.age(x, y), 0.0f);
     }
   }
 }
