@@ -5,6 +5,7 @@
 
 #include "frame/strips.h"
 #include "reproject/warp.h"
+#include "temporal/edge_ages.h"
 #include "temporal/guides.h"
 #include "temporal/predict.h"
 #include "temporal/signal.h"
@@ -16,6 +17,9 @@ namespace {
 
 // Changes when the saved bytes do.
 constexpr int kStateVersion = 3;
+
+// Longest age at edges, over that of the pixels around, where light changes.
+constexpr float kEdgeShare = 2.0f / 3.0f;
 
 }  // namespace
 
@@ -32,6 +36,7 @@ void EigenOptions::validate() const {
   EL_CHECK(young >= 0.0f && young <= 255.0f, "young {}: expected [0, 255] frames", young);
   EL_CHECK(changing >= 1.0f && changing <= 255.0f, "changing {}: expected [1, 255] frames",
            changing);
+  EL_CHECK(edge >= 1.0f && edge <= 255.0f, "edge {}: expected [1, 255] frames", edge);
   EL_CHECK(quiet >= 0.0f && quiet <= 1.0f, "quiet {}: expected [0, 1]", quiet);
 }
 
@@ -228,11 +233,19 @@ void EigenDenoiser::report_rank() {
 
 // Where light changes in ways that no basis knows, memory ends sooner: the longest age of a tile
 // lies between the two by the share that each has in the weight of a frame.
-void EigenDenoiser::shorten_memory(const Tile& tile) {
-  const float change = options_.correct ? correction_.change(tile.index) : 0.0f;
+float EigenDenoiser::longest_age(int tile) const {
+  const float change = options_.correct ? correction_.change(tile) : 0.0f;
   const float most = options_.innovation.max_age, least = std::min(options_.changing, most);
-  if (!(change > 0.0f) || least == most) return;
-  const float longest = 1.0f / ((1.0f - change) / most + change / least);
+  return change > 0.0f ? 1.0f / ((1.0f - change) / most + change / least) : most;
+}
+
+void EigenDenoiser::shorten_memory(const Tile& tile) {
+  const float longest = longest_age(tile.index);
+  if (!frame_.is_static && options_.edge < options_.innovation.max_age) {
+    shorten_edge_ages({frame_, samples_}, options_.taps,
+                      std::min(options_.edge, kEdgeShare * longest), tile, new_age_);
+  }
+  if (!(longest < options_.innovation.max_age)) return;
   for (int y = tile.y0; y < tile.y1; ++y) {
     float* age = new_age_.at(tile.x0, y);
     const float* samples = samples_.at(tile.x0, y);

@@ -31,6 +31,10 @@ struct EigenOptions {
   /// [1, 255] frames: the longest age where light changes in ways that no basis knows. A filter
   /// takes noise from the estimate later, but not what an old light left in it.
   float changing = 12.0f;
+  /// [1, 255] frames: the longest age at edges whose history is blended (edge_ages.h);
+  /// where light changes, two thirds of that of the pixels around, if that is less. From the
+  /// longest age of all on, edges are like other pixels.
+  float edge = 12.0f;
   /// [0, 1] of the squared luminance: a tile whose variances all lie below it is not filtered.
   float quiet = 1e-5f;
   /// [0, 1] of the pixels that must need correction before another basis is born.
@@ -73,6 +77,7 @@ class EigenDenoiser final : public Denoiser {
   void predict(bool resampled);
   void report_rank();
   void retire_bases();
+  [[nodiscard]] float longest_age(int tile) const;
   void shorten_memory(const Tile& tile);
   void update();
   void update_row(const BasisField& history, const Tile& row);

@@ -20,6 +20,8 @@ constexpr std::array kSwitches{
            [](EigenOptions& options, int&) { options.shrink.noise = 0.0; }},
     Switch{{"innovation-test", "ages grow whatever the residual says"},
            [](EigenOptions& options, int&) { options.innovation.test = false; }},
+    Switch{{"edges", "pixels where surfaces meet remember as long as others"},
+           [](EigenOptions& options, int&) { options.edge = 255.0f; }},
     Switch{{"correction", "no smoothed innovation, and so no new basis either"},
            [](EigenOptions& options, int&) { options.correct = false; }},
     Switch{{"resampling", "young pixels get no further samples"},

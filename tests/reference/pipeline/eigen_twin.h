@@ -3,6 +3,7 @@
 #pragma once
 
 #include "reproject/surface_history.h"
+#include "temporal/edge_ages.h"
 #include "temporal/eigen_denoiser.h"
 #include "tests/reference/guided_filter.h"
 #include "tests/reference/pipeline/cells.h"
@@ -44,7 +45,7 @@ class EigenTwin {
     correct(options_.correction, in.frame, r_);
     memory_.advance(coefficients_, learning_);
     innovate(in.frame);
-    shorten_memory();
+    shorten_memory(in.frame);
     update(in.newborn);
     if (in.newborn > 0) memory_.born(in.newborn);
     for (const int k : in.retired) {
@@ -173,17 +174,34 @@ class EigenTwin {
     r_.variance = std::move(variance);
   }
 
-  void shorten_memory() {
+  void shorten_memory(const Frame& frame) {
+    const Plane<std::uint8_t> edges = find_edges(frame);
     const double most = static_cast<double>(options_.innovation.max_age);
     const double least = std::min(static_cast<double>(options_.changing), most);
     new_age_.each([&](int x, int y) {
       const int columns = r_.change.grid.columns();
       const double change = r_.change[y / kCoefficientTile * columns + x / kCoefficientTile];
       const double longest = 1.0 / ((1.0 - change) / most + change / least);
-      if (change > 0.0) {
-        new_age_(x, y) = std::min(new_age_(x, y), std::max(longest, r_.samples(x, y)));
+      const double edge = std::min(static_cast<double>(options_.edge), longest * 2.0 / 3.0);
+      if (edges(x, y) != 0 || change > 0.0) {
+        const double bound = edges(x, y) != 0 ? edge : longest;
+        new_age_(x, y) = std::min(new_age_(x, y), std::max(bound, r_.samples(x, y)));
       }
     });
+  }
+
+  // By the fast kernel: where an edge is, geometry decides.
+  [[nodiscard]] Plane<std::uint8_t> find_edges(const Frame& frame) const {
+    const Extent extent = new_age_.extent;
+    Plane<std::uint8_t> edges(extent);
+    Plane<float> age(extent), samples(extent);
+    age.fill(2.0f);
+    const TileGrid grid = stage_tiles(extent);
+    for (int i = 0; i < grid.count() && !frame.is_static; ++i) {
+      shorten_edge_ages({frame, samples}, options_.taps, 1.0f, grid.tile(i), age);
+    }
+    new_age_.each([&](int x, int y) { edges(x, y) = age(x, y) < 2.0f ? 1 : 0; });
+    return edges;
   }
 
   [[nodiscard]] double fresh_variance(const Frame& frame, glm::ivec2 p) const {
