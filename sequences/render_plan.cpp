@@ -22,7 +22,7 @@ constexpr std::uint32_t kReferenceSeeds = 0x80000000U;
 // times the default is enough for a picture to look at.
 constexpr int kReferenceDirectSpp = 64;
 
-// Samples of direct light, which is half of a frame's rays at 3 spp: only for layers that show it.
+// Samples of direct light, a third of the rays of a run at 3 spp: only for layers that show it.
 int direct_samples(const std::vector<Layer>& layers, bool is_reference, int usual) {
   const bool shown = std::any_of(layers.begin(), layers.end(), [](Layer layer) {
     return layer == Layer::kColor || layer == Layer::kDirect;

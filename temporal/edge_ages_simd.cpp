@@ -38,16 +38,18 @@ Seen Load(const GBuffer& surface, int x, int y) {
           hn::LoadU(I(), reinterpret_cast<const std::int32_t*>(surface.id.row(y)) + x)};
 }
 
-// One column to the left, but for the first, which stays.
-Seen ShiftFirst(const Seen& own) {
+// One lane on by `step` of -1 or 1, but for the lane that has no next one, which stays.
+Seen Shift(const Seen& own, int step) {
   const F d;
   const I di;
-  const VI left = hn::Max(hn::Sub(hn::Iota(di, 0), hn::Set(di, 1)), hn::Zero(di));
-  const auto from = hn::IndicesFromVec(d, left);
+  const VI last = hn::Set(di, static_cast<int>(hn::Lanes(di)) - 1);
+  const VI next = hn::Add(hn::Iota(di, 0), hn::Set(di, step));
+  const VI lane = hn::Min(hn::Max(next, hn::Zero(di)), last);
+  const auto from = hn::IndicesFromVec(d, lane);
   const auto shift = [&](VF v) { return hn::TableLookupLanes(v, from); };
   return {{shift(own.normal[0]), shift(own.normal[1]), shift(own.normal[2])},
           shift(own.depth),
-          hn::TableLookupLanes(own.id, hn::IndicesFromVec(di, left))};
+          hn::TableLookupLanes(own.id, hn::IndicesFromVec(di, lane))};
 }
 
 // What pixels ask of their neighbors.
@@ -95,22 +97,24 @@ MF Same(const Wanted& w, const Seen& seen, int x, int y) {
                  hn::And(hn::Le(off, w.tolerance), hn::Ge(cosine, w.cosine)));
 }
 
-// Where all neighbors show the pixel's own surface; what is beside the image does not count.
-MF IsInside(const Frame& frame, const TapOptions& options, int x, int y) {
+// The same of the neighbors to the left (step -1) or right (1); what is beside the image does not
+// count. At its edges the pixels themselves hold all the neighbors, and rows may end in memory.
+MF SameBeside(const Wanted& w, const Frame& frame, int x, int y, int step) {
   const F d;
+  const int width = frame.extent().width, lanes = static_cast<int>(hn::Lanes(d));
+  const bool loads = step < 0 ? x > 0 : x + lanes < width;
+  if (loads) return Same(w, Load(frame.surface, x + step, y), x + step, y);
+  const VF column = hn::Iota(d, static_cast<float>(x + step));
+  const MF outside =
+      hn::Or(hn::Lt(column, hn::Zero(d)), hn::Ge(column, hn::Set(d, static_cast<float>(width))));
+  return hn::Or(outside, Same(w, Shift(w.own, step), x + step, y));
+}
+
+// Where all neighbors show the pixel's own surface.
+MF IsInside(const Frame& frame, const TapOptions& options, int x, int y) {
   const GBuffer& surface = frame.surface;
-  const Seen own = Load(surface, x, y);
-  const Wanted wanted = Ask(frame, options, own, x, y);
-  const int last = frame.extent().width - 1;
-  const VF column = hn::Iota(d, static_cast<float>(x));
-  const MF rightmost = hn::Ge(column, hn::Set(d, static_cast<float>(last)));
-  MF same = hn::Or(rightmost, Same(wanted, Load(surface, x + 1, y), x + 1, y));
-  if (x > 0) {
-    same = hn::And(same, Same(wanted, Load(surface, x - 1, y), x - 1, y));
-  } else {
-    const MF leftmost = hn::Le(column, hn::Zero(d));
-    same = hn::And(same, hn::Or(leftmost, Same(wanted, ShiftFirst(own), x - 1, y)));
-  }
+  const Wanted wanted = Ask(frame, options, Load(surface, x, y), x, y);
+  MF same = hn::And(SameBeside(wanted, frame, x, y, -1), SameBeside(wanted, frame, x, y, 1));
   if (y > 0) same = hn::And(same, Same(wanted, Load(surface, x, y - 1), x, y - 1));
   if (y + 1 < frame.extent().height) {
     same = hn::And(same, Same(wanted, Load(surface, x, y + 1), x, y + 1));
