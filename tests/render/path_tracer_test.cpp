@@ -377,8 +377,7 @@ TEST(PathTracer, NoRayStartsInsideTheNextWall) {
   const SurfaceTable surfaces(scene, geometry);
   int below = 0;
   for (int i = 0; i < 4000; ++i) {
-    const Sampler sampler(1, static_cast<std::uint32_t>(i));
-    Sampler draw = sampler;
+    Sampler draw(1, static_cast<std::uint32_t>(i));
     const glm::vec2 from = draw.next_2d(), slope = draw.next_2d();
     const glm::vec3 eye(4.0f * from.x - 2.0f, 0.4f + 2.0f * from.y, -2.0f * slope.x);
     const glm::vec3 seam(4.0f * slope.y - 2.0f, 0.3f, 0.7f);
