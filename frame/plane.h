@@ -52,6 +52,10 @@ inline constexpr std::size_t kAlias = 4096;
   return lines < 16 ? lines : lines | 1;
 }
 
+/// Lines that may be read before the first value and behind the last: a vector that starts up to
+/// its own length beside a row, and its neighbor one pixel on.
+inline constexpr std::size_t kMargin = 2;
+
 /// Lines before the first of a large plane: planes that are made one after another differ.
 [[nodiscard]] inline std::size_t next_start() {
   static std::atomic<unsigned> made = 0;
@@ -64,8 +68,9 @@ inline constexpr std::size_t kAlias = 4096;
 ///
 /// Rows start on 64-byte lines and are padded to whole lines (odd numbers of them when long), so
 /// that vector kernels may read (and, in rows they own, write) up to the padded width without a
-/// tail loop; padding is never read as data. Moves are cheap, copies are explicit: clone()
-/// allocates, copy_from() does not.
+/// tail loop; padding is never read as data. Up to a line before each row and two behind it may be
+/// read as well: they hold padding, another row or zeros. Moves are cheap, copies are explicit:
+/// clone() allocates, copy_from() does not.
 template <typename T>
 class Plane {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -82,13 +87,13 @@ class Plane {
     check_channels(channels);
     stride_ = stride_of(channels);
     capacity_ = stride_ * static_cast<std::size_t>(extent.height);
-    const std::size_t bytes = capacity_ * sizeof(T);
-    Free free;
-    if (bytes >= detail::kAlias) free = {detail::next_start() * kLine, detail::kAlias};
+    const std::size_t bytes = capacity_ * sizeof(T), margin = detail::kMargin * kLine;
+    Free free{margin, kLine};
+    if (bytes >= detail::kAlias) free = {margin + detail::next_start() * kLine, detail::kAlias};
     auto* memory = static_cast<std::byte*>(
-        ::operator new (free.start + bytes, std::align_val_t{free.alignment}));
+        ::operator new (free.start + bytes + margin, std::align_val_t{free.alignment}));
     data_ = {reinterpret_cast<T*>(memory + free.start), free};
-    std::memset(static_cast<void*>(data_.get()), 0, bytes);
+    std::memset(memory + free.start - margin, 0, margin + bytes + margin);
   }
 
   [[nodiscard]] Extent extent() const { return extent_; }

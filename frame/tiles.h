@@ -1,6 +1,7 @@
 // The fixed tile grid and the one parallel loop. tiles.cpp is the only file that includes TBB.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -16,6 +17,13 @@ struct Tile {
 
   [[nodiscard]] int pixels() const { return (x1 - x0) * (y1 - y0); }
 };
+
+template <typename T>
+void fill_tile(Plane<T>& plane, const Tile& tile, T value) {
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    std::fill(plane.at(tile.x0, y), plane.at(tile.x1 - 1, y) + plane.channels(), value);
+  }
+}
 
 /// A grid that depends on the extent and the tile size alone, never on the number of threads: sums
 /// kept per tile and added in index order have the same bits however many threads there are.

@@ -23,12 +23,12 @@ struct TapOptions {
 /// Pixels handled at once: the width of a stage tile.
 inline constexpr int kSegment = 64;
 
-/// The taps of up to kSegment pixels of one row. Weights of valid taps sum to 1; all four are 0
-/// where no tap is valid (a new pixel) or the pixel shows no surface. Offsets are always inside the
-/// image.
+/// The taps of up to kSegment pixels of one row: tap t of pixel i is pixel (x[i] + t % 2, y[i] + t
+/// / 2) of the previous frame. Weights of valid taps sum to 1; all four are 0 where no tap is valid
+/// (a new pixel) or the pixel shows no surface, and so is that of a tap outside the image.
 struct TapSegment {
   alignas(64) std::array<std::array<float, kSegment>, 4> weight;
-  alignas(64) std::array<std::array<std::int32_t, kSegment>, 4> x, y;
+  alignas(64) std::array<std::int32_t, kSegment> x, y;
 };
 
 /// The previous frame's surface, as far as taps need it.
@@ -46,7 +46,8 @@ struct PreviousSurface {
 /// For an object that turned between the frames N is off by the turn; at film rates that stays
 /// within the plane bound. Motion or depth that is not finite leaves no valid tap.
 ///
-/// Fills taps for pixels [x0, x1) of row y; x0 a multiple of 16 (vectors), x1 - x0 <= kSegment.
+/// Fills taps for pixels [x0, x1) of row y, and weights of 0 behind them up to a whole vector; x0 a
+/// multiple of 16 (vectors), x1 - x0 <= kSegment.
 void compute_taps(const Frame& current, const PreviousSurface& previous, const TapOptions& options,
                   const Tile& row, TapSegment& taps);
 

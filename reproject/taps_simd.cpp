@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <limits>
 
 #include "frame/float_traps.h"
@@ -64,22 +65,7 @@ struct Seen {
   VI id;
 };
 
-Seen GatherSeen(const GBuffer& surface, VI x, VI y) {
-  const F d;
-  const I di;
-  const auto offset = [&](std::size_t stride) {
-    return hn::Add(hn::Mul(y, hn::Set(di, static_cast<int>(stride))), x);
-  };
-  const VI at = offset(surface.depth.stride());
-  return {{hn::GatherIndex(d, surface.normal[0].row(0), at),
-           hn::GatherIndex(d, surface.normal[1].row(0), at),
-           hn::GatherIndex(d, surface.normal[2].row(0), at)},
-          hn::GatherIndex(d, surface.depth.row(0), at),
-          hn::GatherIndex(di, reinterpret_cast<const std::int32_t*>(surface.id.row(0)),
-                          offset(surface.id.stride()))};
-}
-
-// The same where the taps of all lanes stand side by side from (x, y) on.
+// The taps of a vector, side by side from (x, y) on.
 Seen LoadSeen(const GBuffer& surface, int x, int y) {
   const F d;
   const auto load = [&](const Plane<float>& plane) { return hn::LoadU(d, plane.row(y) + x); };
@@ -88,18 +74,13 @@ Seen LoadSeen(const GBuffer& surface, int x, int y) {
           hn::LoadU(I(), reinterpret_cast<const std::int32_t*>(surface.id.row(y)) + x)};
 }
 
-MF TapValid(const Seen& seen, float normal_cosine, const Wanted& wanted, const Rays& rays, VI x,
-            VI y) {
+// `along`: N . ray(tap), both in view space.
+MF TapValid(const Seen& seen, VF along, VF normal_cosine, const Wanted& wanted) {
   const F d;
-  const VF half = hn::Set(d, 0.5f);
-  const VF ray_x = rays.X(hn::Add(hn::ConvertTo(d, x), half));
-  const VF ray_y = rays.Y(hn::Add(hn::ConvertTo(d, y), half));
-  const VF along = hn::MulAdd(wanted.view_normal.x, ray_x,
-                              hn::MulAdd(wanted.view_normal.y, ray_y, wanted.view_normal.z));
   const VF distance = hn::Abs(hn::Sub(hn::Mul(seen.depth, along), wanted.plane));
   const MF same = hn::RebindMask(d, hn::Eq(seen.id, wanted.id));
   return hn::And(same, hn::And(hn::Le(distance, wanted.tolerance),
-                               hn::Ge(Dot(seen.normal, wanted.normal), hn::Set(d, normal_cosine))));
+                               hn::Ge(Dot(seen.normal, wanted.normal), normal_cosine)));
 }
 
 // The pixel's own surface, and q = p + motion(p) in units of pixel centers.
@@ -143,44 +124,76 @@ Query LoadQuery(const Frame& current, const PreviousSurface& previous, const Tap
   return q;
 }
 
-// Where the upper left taps of all valid lanes stand side by side in one row, with all four taps of
-// each inside the image, the tap of the first lane. That is almost everywhere, and plain loads take
-// a fraction of the time of gathers.
+// Pixels of a vector whose taps stand side by side, the upper left one of lane i at (x + i, y).
+// Most vectors are one run, and plain loads take a fraction of the time of gathers.
 struct Run {
-  bool found = false;
-  int x = 0, y = 0;
+  int x, y;
+  MF lanes;
 };
 
-Run FindRun(VI x0, VI y0, MF valid, Extent extent) {
+// Takes the run of the first of the lanes that are `left` from them.
+Run TakeRun(const TapSegment& taps, std::size_t at, MF& left) {
+  const F d;
   const I di;
-  const int lanes = static_cast<int>(hn::Lanes(di));
-  const auto known = hn::RebindMask(di, valid);
-  const std::intptr_t lane = hn::FindFirstTrue(di, known);
-  if (lane < 0) return {};
-  const VI start = hn::Sub(x0, hn::Iota(di, 0));
-  alignas(64) std::int32_t x[HWY_MAX_BYTES / sizeof(std::int32_t)];
-  alignas(64) std::int32_t y[HWY_MAX_BYTES / sizeof(std::int32_t)];
-  hn::Store(start, di, x);
-  hn::Store(y0, di, y);
-  const Run run{true, x[lane], y[lane]};
-  const auto same = hn::And(hn::Eq(start, hn::Set(di, run.x)), hn::Eq(y0, hn::Set(di, run.y)));
-  const bool inside =
-      run.x >= 0 && run.x + lanes < extent.width && run.y >= 0 && run.y + 1 < extent.height;
-  return inside && hn::AllTrue(di, hn::Or(same, hn::Not(known))) ? run : Run{};
+  const std::size_t first = hn::FindKnownFirstTrue(d, left);
+  Run run{taps.x[at + first] - static_cast<int>(first), taps.y[at + first], {}};
+  const VI x = hn::Sub(hn::Load(di, taps.x.data() + at), hn::Iota(di, 0));
+  const VI y = hn::Load(di, taps.y.data() + at);
+  const auto same = hn::And(hn::Eq(x, hn::Set(di, run.x)), hn::Eq(y, hn::Set(di, run.y)));
+  run.lanes = hn::And(left, hn::RebindMask(d, same));
+  left = hn::AndNot(run.lanes, left);
+  return run;
 }
 
 // Asks for what the row below will read: its own pixels, and the lower taps of a run.
-void PrefetchBelow(const Frame& current, const GBuffer& previous, const Run& run, int x, int y) {
-  const auto guides = [](const GBuffer& surface, int column, int row) {
-    for (const auto& plane : surface.normal) prefetch_below(plane, column, row);
-    prefetch_below(surface.id, column, row);
-  };
+void PrefetchBelow(const Frame& current, int x, int y) {
   for (const auto& plane : current.motion) prefetch_below(plane, x, y);
   prefetch_below(current.previous_depth, x, y);
-  guides(current.surface, x, y);
-  if (!run.found) return;
-  prefetch_below(previous.depth, run.x, run.y + 1);
-  guides(previous, run.x, run.y + 1);
+  for (const auto& plane : current.surface.normal) prefetch_below(plane, x, y);
+  prefetch_below(current.surface.id, x, y);
+}
+
+void PrefetchBelow(const GBuffer& previous, int x, int y) {
+  prefetch_below(previous.depth, x, y);
+  for (const auto& plane : previous.normal) prefetch_below(plane, x, y);
+  prefetch_below(previous.id, x, y);
+}
+
+// Weights along one axis of the taps at floor(q) and one on, 0 outside the image.
+struct AxisWeights {
+  VF weight[2];
+
+  AxisWeights(VF q, VF floor, int size) {
+    const F d;
+    const VF high = hn::Sub(q, floor), last = hn::Set(d, static_cast<float>(size - 1));
+    weight[0] = hn::IfThenElseZero(hn::Ge(floor, hn::Zero(d)), hn::Sub(hn::Set(d, 1.0f), high));
+    weight[1] = hn::IfThenElseZero(hn::Lt(floor, last), high);
+  }
+};
+
+// The weights of a run's valid taps, not yet scaled to sum 1.
+void WeighRun(const Run& run, const Query& q, const AxisWeights& wx, const AxisWeights& wy,
+              const PreviousSurface& previous, const TapOptions& options, const Rays& rays,
+              VF (&weight)[4]) {
+  const F d;
+  const VF cosine = hn::Set(d, options.normal_cosine);
+  const int height = previous.surface.depth.height();
+  // Ray x of the left taps, from one lane to the next and from a tap to its neighbor.
+  const VF ray_x = rays.X(hn::Iota(d, static_cast<float>(run.x) + 0.5f));
+  for (int down = 0; down < 2; ++down) {
+    const int line = run.y + down;
+    if (line < 0 || line >= height) continue;
+    const VF ray_y = rays.Y(hn::Set(d, static_cast<float>(line) + 0.5f));
+    const Vec3& normal = q.wanted.view_normal;
+    VF along = hn::MulAdd(normal.x, ray_x, hn::MulAdd(normal.y, ray_y, normal.z));
+    for (int right = 0; right < 2; ++right) {
+      const Seen seen = LoadSeen(previous.surface, run.x + right, line);
+      const MF valid = hn::And(run.lanes, TapValid(seen, along, cosine, q.wanted));
+      VF& w = weight[2 * down + right];
+      w = hn::IfThenElse(valid, hn::Mul(wx.weight[right], wy.weight[down]), w);
+      along = hn::MulAdd(normal.x, rays.inverse_focal, along);
+    }
+  }
 }
 
 void ComputeTaps(const Frame& current, const PreviousSurface& previous, const TapOptions& options,
@@ -189,42 +202,31 @@ void ComputeTaps(const Frame& current, const PreviousSurface& previous, const Ta
   const I di;
   const Rays rays(previous.camera);
   const Extent extent = previous.surface.depth.extent();
-  const VI last_x = hn::Set(di, extent.width - 1), last_y = hn::Set(di, extent.height - 1);
-  const VI zero = hn::Zero(di);
   const VF one = hn::Set(d, 1.0f);
   const int lanes = static_cast<int>(hn::Lanes(d));
 
   for (int x = row.x0; x < row.x1; x += lanes) {
     const Query q = LoadQuery(current, previous, options, rays, x, row.y0);
     const VF floor_x = hn::Floor(q.x), floor_y = hn::Floor(q.y);
-    const VF fx = hn::Sub(q.x, floor_x), fy = hn::Sub(q.y, floor_y);
-    const VI x0 = hn::ConvertTo(di, floor_x), y0 = hn::ConvertTo(di, floor_y);
-    const VF wx[2] = {hn::Sub(one, fx), fx}, wy[2] = {hn::Sub(one, fy), fy};
-    const Run run = FindRun(x0, y0, q.valid, extent);
-    PrefetchBelow(current, previous.surface, run, x, row.y0);
+    const AxisWeights wx(q.x, floor_x, extent.width), wy(q.y, floor_y, extent.height);
+    PrefetchBelow(current, x, row.y0);
 
     const auto at = static_cast<std::size_t>(x - row.x0);
-    VF weight[4], sum = hn::Zero(d);
-    for (int t = 0; t < 4; ++t) {
-      const int right = t & 1, down = t >> 1;
-      const VI tx = hn::Add(x0, hn::Set(di, right)), ty = hn::Add(y0, hn::Set(di, down));
-      const VI cx = hn::Min(hn::Max(tx, zero), last_x), cy = hn::Min(hn::Max(ty, zero), last_y);
-      const MF inside = hn::RebindMask(d, hn::And(hn::Eq(tx, cx), hn::Eq(ty, cy)));
-      const Seen seen = run.found ? LoadSeen(previous.surface, run.x + right, run.y + down)
-                                  : GatherSeen(previous.surface, cx, cy);
-      const MF valid = hn::And(hn::And(q.valid, inside),
-                               TapValid(seen, options.normal_cosine, q.wanted, rays, cx, cy));
-      weight[t] = hn::IfThenElseZero(valid, hn::Mul(wx[right], wy[down]));
-      sum = hn::Add(sum, weight[t]);
-      hn::Store(cx, di, taps.x[static_cast<std::size_t>(t)].data() + at);
-      hn::Store(cy, di, taps.y[static_cast<std::size_t>(t)].data() + at);
+    hn::Store(hn::ConvertTo(di, floor_x), di, taps.x.data() + at);
+    hn::Store(hn::ConvertTo(di, floor_y), di, taps.y.data() + at);
+    VF weight[4] = {hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+    MF left = hn::And(q.valid, hn::FirstN(d, static_cast<std::size_t>(row.x1 - x)));
+    while (!hn::AllFalse(d, left)) {
+      const Run run = TakeRun(taps, at, left);
+      PrefetchBelow(previous.surface, run.x, std::max(run.y + 1, 0));
+      WeighRun(run, q, wx, wy, previous, options, rays, weight);
     }
+    const VF sum = hn::Add(hn::Add(weight[0], weight[1]), hn::Add(weight[2], weight[3]));
     // A sum below 1 % is one far corner that happened to pass: nothing to trust.
     const MF enough = hn::Ge(sum, hn::Set(d, 0.01f));
-    const VF scale = hn::IfThenElseZero(enough, hn::Div(one, sum));
-    for (int t = 0; t < 4; ++t) {
-      hn::Store(hn::IfThenElseZero(enough, hn::Mul(weight[t], scale)), d,
-                taps.weight[static_cast<std::size_t>(t)].data() + at);
+    const VF scale = hn::IfThenElseZero(enough, hn::Div(one, hn::IfThenElse(enough, sum, one)));
+    for (std::size_t t = 0; t < 4; ++t) {
+      hn::Store(hn::Mul(weight[t], scale), d, taps.weight[t].data() + at);
     }
   }
 }

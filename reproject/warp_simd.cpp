@@ -5,7 +5,6 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "reproject/warp_simd.cpp"
-#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -14,93 +13,136 @@ namespace eigenlight::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
-
-// `kWidth` divides the floats of a pixel.
-template <int kWidth>
-void WarpPixels(const BasisField& from, const TapSegment& taps, const Tile& row, BasisField& to) {
-  const hn::CappedTag<float, kWidth> d;
-  constexpr int kLine = static_cast<int>(Plane<float>::kLine / sizeof(float));
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  const int floats = from.pixel_floats();
-  const std::size_t stride = from.data().stride();
-  const float* base = from.data().row(0);
-  float* out = to.pixel(row.x0, row.y0);
-  // Rows of a tile are too short for the hardware to foresee the next one: asks for those that the
-  // row below will read and write.
-  const int last = from.extent().height - 1;
-  const std::size_t below = row.y0 < last ? stride : 0;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(row.x1 - row.x0); ++i, out += floats) {
-    const auto pixel = [&](std::size_t t) {
-      return base + stride * static_cast<std::size_t>(taps.y[t][i]) + taps.x[t][i] * floats;
-    };
-    const float* const p[4] = {pixel(0), pixel(1), pixel(2), pixel(3)};
-    const float* next = p[2] + (taps.y[2][i] < last ? stride : 0);
-    for (int j = 0; j < floats; j += kLine) {
-      hwy::Prefetch(next + j);
-      hwy::Prefetch(out + below + j);
-    }
-    const auto w0 = hn::Set(d, taps.weight[0][i]), w1 = hn::Set(d, taps.weight[1][i]);
-    const auto w2 = hn::Set(d, taps.weight[2][i]), w3 = hn::Set(d, taps.weight[3][i]);
-    for (int j = 0; j < floats; j += lanes) {
-      const auto upper = hn::MulAdd(w0, hn::Load(d, p[0] + j), hn::Mul(w1, hn::Load(d, p[1] + j)));
-      const auto lower = hn::MulAdd(w2, hn::Load(d, p[2] + j), hn::Mul(w3, hn::Load(d, p[3] + j)));
-      hn::Store(hn::Add(upper, lower), d, out + j);
-    }
-  }
-}
-
-// A pixel is a whole number of groups of four floats; the widest vectors that fit.
-void WarpBases(const BasisField& from, const TapSegment& taps, const Tile& row, BasisField& to) {
-  if (from.pixel_floats() % 16 == 0) {
-    WarpPixels<16>(from, taps, row, to);
-  } else if (from.pixel_floats() % 8 == 0) {
-    WarpPixels<8>(from, taps, row, to);
-  } else {
-    WarpPixels<4>(from, taps, row, to);
-  }
-}
-
 using F = hn::ScalableTag<float>;
 using I = hn::RebindToSigned<F>;
+using VF = hn::Vec<F>;
+using VI = hn::Vec<I>;
+using MF = hn::Mask<F>;
 
-// Whether the taps of a vector stand side by side, all inside the image: taps beside it have been
-// moved to its edge, where a pixel's own two may be one.
-bool IsRun(const TapSegment& taps, std::size_t i) {
+// Pixels of a vector whose taps stand side by side, the upper left one of lane i at (x + i, y): of
+// each tap those where it counts.
+struct Run {
+  int x, y;
+  MF counts[4];
+};
+
+// Takes the run of the first of the lanes that are `left` from them.
+Run TakeRun(const TapSegment& taps, std::size_t at, const VF (&weight)[4], MF& left) {
+  const F d;
   const I di;
-  const auto x = hn::Load(di, taps.x[0].data() + i), y = hn::Load(di, taps.y[0].data() + i);
-  const auto one = hn::Set(di, 1);
-  const auto beside = hn::Eq(hn::Load(di, taps.x[1].data() + i), hn::Add(x, one));
-  const auto below = hn::Eq(hn::Load(di, taps.y[2].data() + i), hn::Add(y, one));
-  const auto along = hn::Eq(hn::Sub(x, hn::Iota(di, 0)), hn::Set(di, taps.x[0][i]));
-  const auto level = hn::Eq(y, hn::Set(di, taps.y[0][i]));
-  return hn::AllTrue(di, hn::And(hn::And(beside, below), hn::And(along, level)));
+  const std::size_t first = hn::FindKnownFirstTrue(d, left);
+  Run run{taps.x[at + first] - static_cast<int>(first), taps.y[at + first], {}};
+  const VI x = hn::Sub(hn::Load(di, taps.x.data() + at), hn::Iota(di, 0));
+  const VI y = hn::Load(di, taps.y.data() + at);
+  const auto same = hn::And(hn::Eq(x, hn::Set(di, run.x)), hn::Eq(y, hn::Set(di, run.y)));
+  const MF lanes = hn::And(left, hn::RebindMask(d, same));
+  for (int t = 0; t < 4; ++t) run.counts[t] = hn::And(lanes, hn::Gt(weight[t], hn::Zero(d)));
+  left = hn::AndNot(lanes, left);
+  return run;
+}
+
+// Calls warp(run, is_first) for each run of the vector of pixels `at` a segment; none if no pixel
+// has taps, which is for `empty`.
+template <typename Warp, typename Empty>
+void ForEachRun(const TapSegment& taps, std::size_t at, const Warp& warp, const Empty& empty) {
+  const F d;
+  VF weight[4];
+  for (std::size_t t = 0; t < 4; ++t) weight[t] = hn::Load(d, taps.weight[t].data() + at);
+  MF left =
+      hn::Gt(hn::Add(hn::Add(weight[0], weight[1]), hn::Add(weight[2], weight[3])), hn::Zero(d));
+  if (hn::AllFalse(d, left)) return empty();
+  for (bool is_first = true; !hn::AllFalse(d, left); is_first = false) {
+    warp(TakeRun(taps, at, weight, left), weight, is_first);
+  }
+}
+
+// What a tap of a run takes from two blocks: the lanes up to the end of one, the rest from the
+// next.
+struct Terms {
+  const float* from[8];
+  MF counts[8];
+
+  Terms(const BasisField& field, const Run& run) {
+    const F d;
+    const int last_x = field.extent().width - 1, last_y = field.extent().height - 1;
+    const VF lane = hn::Iota(d, 0.0f);
+    for (int t = 0; t < 4; ++t) {
+      const int x = run.x + t % 2, y = std::clamp(run.y + t / 2, 0, last_y);
+      // Rounds down also where x is negative.
+      const int start = x & ~(kBlock - 1), end = start + kBlock;
+      const MF first = hn::Lt(lane, hn::Set(d, static_cast<float>(end - x)));
+      counts[2 * t] = hn::And(first, run.counts[t]);
+      counts[2 * t + 1] = hn::AndNot(first, run.counts[t]);
+      // Nothing counts in blocks beside the image: any other will do.
+      from[2 * t] = field.at(std::max(start, 0), y) + (x - start);
+      from[2 * t + 1] = field.at(end <= last_x ? end : 0, y) - (end - x);
+    }
+  }
+};
+
+// Of the pixels from x on, those of a run; the others get 0 if it is the first.
+void WarpBlocks(const BasisField& from, const Run& run, const VF (&weights)[4], bool is_first,
+                float* to) {
+  const F d;
+  const Terms terms(from, run);
+  for (int j = 0; j < kBlock * from.lines(); j += kBlock) {
+    VF sum = is_first ? hn::Zero(d) : hn::Load(d, to + j), other = hn::Zero(d);
+    const auto term = [&](int t) {
+      return hn::IfThenElseZero(terms.counts[t], hn::LoadU(d, terms.from[t] + j));
+    };
+    for (int t = 0; t < 4; ++t) {
+      sum = hn::MulAdd(weights[t], term(2 * t), sum);
+      other = hn::MulAdd(weights[t], term(2 * t + 1), other);
+    }
+    hn::Store(hn::Add(sum, other), d, to + j);
+  }
+}
+
+void WarpBases(const BasisField& from, const TapSegment& taps, const Tile& row, BasisField& to) {
+  const F d;
+  for (int x = row.x0; x < row.x1; x += static_cast<int>(hn::Lanes(d))) {
+    float* out = to.at(x, row.y0);
+    prefetch_below(to, x, row.y0);
+    ForEachRun(
+        taps, static_cast<std::size_t>(x - row.x0),
+        [&](const Run& run, const VF(&weights)[4], bool is_first) {
+          prefetch_below(from, run.x, run.y + 1);
+          WarpBlocks(from, run, weights, is_first, out);
+        },
+        [&] {
+          for (int j = 0; j < to.lines(); ++j) hn::Store(hn::Zero(d), d, out + kBlock * j);
+        });
+  }
+}
+
+// What lanes that do not count load, which may lie beside the image, is left out.
+VF WarpVector(const Plane<float>& from, const Run& run, const VF (&weights)[4]) {
+  const F d;
+  const int last = from.height() - 1;
+  VF sum = hn::Zero(d);
+  for (int t = 0; t < 4; ++t) {
+    const float* row = from.row(std::clamp(run.y + t / 2, 0, last));
+    const VF value = hn::LoadU(d, row + run.x + t % 2);
+    sum = hn::MulAdd(weights[t], hn::IfThenElseZero(run.counts[t], value), sum);
+  }
+  return sum;
 }
 
 void WarpPlane(const Plane<float>& from, const TapSegment& taps, const Tile& row,
                Plane<float>& to) {
   const F d;
-  const std::size_t lanes = hn::Lanes(d), count = static_cast<std::size_t>(row.x1 - row.x0);
-  float* out = to.at(row.x0, row.y0);
-  for (std::size_t i = 0; i < count; i += lanes) {
-    prefetch_below(to, row.x0 + static_cast<int>(i), row.y0);
-    if (IsRun(taps, i)) {
-      const int x = taps.x[0][i], y = taps.y[0][i];
-      prefetch_below(from, x, y + 1);
-      auto sum = hn::Zero(d);
-      for (int t = 0; t < 4; ++t) {
-        const auto weight = hn::Load(d, taps.weight[static_cast<std::size_t>(t)].data() + i);
-        sum = hn::MulAdd(weight, hn::LoadU(d, from.row(y + t / 2) + x + t % 2), sum);
-      }
-      hn::StoreU(sum, d, out + i);
-      continue;
-    }
-    for (std::size_t j = i; j < std::min(i + lanes, count); ++j) {
-      float sum = 0.0f;
-      for (std::size_t t = 0; t < 4; ++t) {
-        sum += taps.weight[t][j] * from(taps.x[t][j], taps.y[t][j]);
-      }
-      out[j] = sum;
-    }
+  const int last = from.height() - 1;
+  for (int x = row.x0; x < row.x1; x += static_cast<int>(hn::Lanes(d))) {
+    float* out = to.at(x, row.y0);
+    prefetch_below(to, x, row.y0);
+    ForEachRun(
+        taps, static_cast<std::size_t>(x - row.x0),
+        [&](const Run& run, const VF(&weights)[4], bool is_first) {
+          prefetch_below(from, run.x, std::clamp(run.y + 1, 0, last));
+          const VF sum = WarpVector(from, run, weights);
+          hn::Store(is_first ? sum : hn::Add(hn::Load(d, out), sum), d, out);
+        },
+        [&] { hn::Store(hn::Zero(d), d, out); });
   }
 }
 

@@ -48,8 +48,11 @@ Correction::Correction(Extent extent, const CorrectionOptions& options)
 
 double Correction::process(const CorrectionInputs& in, const Planes<3>& prediction,
                            Plane<float>& residual) {
-  for_each_tile(gate_.grid(), [&](const Tile& tile) {
-    blocks_[static_cast<std::size_t>(tile.index)] = test_blocks(in, residual, tile);
+  std::fill(blocks_.begin(), blocks_.end(), BlockCounts{});
+  for_each_strip(gate_.grid(), [&](const Strip& strip) {
+    test_blocks(in, residual, strip.area, kCoefficientTile,
+                std::span(blocks_).subspan(static_cast<std::size_t>(strip.area.index),
+                                           static_cast<std::size_t>(strip.tiles)));
   });
   std::swap(open_, was_open_);
   const bool any = open_gates();

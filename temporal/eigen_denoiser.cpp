@@ -5,7 +5,7 @@
 
 #include "frame/strips.h"
 #include "reproject/warp.h"
-#include "temporal/edge_ages.h"
+#include "temporal/edges.h"
 #include "temporal/guides.h"
 #include "temporal/predict.h"
 #include "temporal/signal.h"
@@ -16,7 +16,7 @@ namespace eigenlight {
 namespace {
 
 // Changes when the saved bytes do.
-constexpr int kStateVersion = 3;
+constexpr int kStateVersion = 4;
 
 // Longest age at edges, over that of the pixels around, where light changes.
 constexpr float kEdgeShare = 2.0f / 3.0f;
@@ -60,8 +60,8 @@ EigenDenoiser::EigenDenoiser(const DenoiserOptions& options, const EigenOptions&
       sums_(static_cast<std::size_t>(tiles_.count())),
       counts_(static_cast<std::size_t>(tiles_.count())),
       extra_(extent_),
+      edge_(extent_),
       young_(extent_),
-      extra_mean_(make_planes<3>(extent_)),
       light_(make_planes<3>(extent_)),
       prediction_(make_planes<3>(extent_)),
       guided_light_(make_planes<3>(extent_)),
@@ -132,21 +132,29 @@ void EigenDenoiser::warp_history() {
   if (report_.cut) {
     memory_.reset();
     bases_.reshape(memory_.active());
-    bases_.data().fill(0.0f);
+    bases_.clear();
     variance_.fill(0.0f);
   }
   warped_bases_.reshape(bases_.bases());
   const bool moving = !report_.cut && !still;
+  has_edges_ = moving && options_.edge < options_.innovation.max_age;
   if (!moving) {
     std::swap(bases_, warped_bases_);
     std::swap(variance_, warped_variance_);
   }
   const SumInputs history{warped_bases_, frame_, warped_variance_, memory_.active()};
-  for_each_segment(tiles_, [&](const Tile& row) {
-    if (moving) warp_row(row);
-    for (int x = row.x0; x < row.x1; ++x) old_age_(x, row.y0) = warped_bases_.age(x, row.y0);
-    if (report_.cut || is_empty(row)) return;
-    accumulate_tile(history, row, sums_[static_cast<std::size_t>(row.index)]);
+  for_each_strip(tiles_, [&](const Strip& strip) {
+    for_each_band(strip, kSumRows, [&](const Strip& band) {
+      for_each_segment(tiles_, band, [&](const Tile& row) {
+        if (moving) warp_row(row);
+        warped_bases_.copy_ages(row, old_age_);
+      });
+      if (report_.cut) return;
+      for_each_part(tiles_, band, [&](const Tile& part) {
+        if (is_empty(part)) return;
+        accumulate_tile(history, part, sums_[static_cast<std::size_t>(part.index)]);
+      });
+    });
   });
   for_each_tile(tiles_, [&](const Tile& tile) {
     admit_outliers(history, tile, sums_[static_cast<std::size_t>(tile.index)]);
@@ -156,19 +164,16 @@ void EigenDenoiser::warp_history() {
 }
 
 void EigenDenoiser::warp_row(const Tile& row) {
-  if (is_empty(row)) {
-    std::fill(warped_bases_.pixel(row.x0, row.y0),
-              warped_bases_.pixel(row.x1 - 1, row.y0) + warped_bases_.pixel_floats(), 0.0f);
-    return;
-  }
+  if (is_empty(row)) return warped_bases_.clear(row);
   TapSegment taps;
   compute_taps(frame_, surfaces_.previous(), options_.taps, row, taps);
+  if (has_edges_) find_edges(frame_, options_.taps, row, edge_);
   warp_bases(bases_, taps, row, warped_bases_);
   warp_plane(variance_, taps, row, warped_variance_);
 }
 
 bool EigenDenoiser::resample(FrameSource& source, std::int64_t planned) {
-  const bool resampled = planned > 0 && source.resample(extra_, frame_, extra_mean_);
+  const bool resampled = planned > 0 && source.resample(extra_, frame_, light_);
   if (resampled) report_.extra_samples = planned;
   return resampled;
 }
@@ -176,19 +181,21 @@ bool EigenDenoiser::resample(FrameSource& source, std::int64_t planned) {
 // What history expects of this frame's samples. Strip by strip: light and prediction are still in
 // the cache when they are compared.
 void EigenDenoiser::predict(bool resampled) {
-  const SignalInputs signal{frame_, resampled ? &extra_ : nullptr,
-                            resampled ? &extra_mean_ : nullptr, old_age_};
+  const SignalInputs signal{frame_, resampled ? &extra_ : nullptr, resampled ? &light_ : nullptr,
+                            old_age_};
   for_each_strip(tiles_, [&](const Strip& strip) {
-    for_each_segment(tiles_, strip, [&](const Tile& row) {
-      const SignalCounts found = merge_samples(signal, row, {light_, samples_});
-      TileCount& count = counts_[static_cast<std::size_t>(row.index)];
-      count.fresh += found.fresh;
-      count.non_finite += found.non_finite;
-      predict_tile(warped_bases_, coefficients_, light_, row,
-                   {prediction_, residual_, confirmed_, variance_});
+    for_each_band(strip, kFireflyBlock, [&](const Strip& band) {
+      for_each_segment(tiles_, band, [&](const Tile& row) {
+        const SignalCounts found = merge_samples(signal, row, {light_, samples_});
+        TileCount& count = counts_[static_cast<std::size_t>(row.index)];
+        count.fresh += found.fresh;
+        count.non_finite += found.non_finite;
+        predict_tile(warped_bases_, coefficients_, light_, row,
+                     {prediction_, residual_, confirmed_, variance_});
+      });
+      fireflies_.count({prediction_, old_age_, samples_, variance_},
+                       {light_, residual_, confirmed_}, band.area);
     });
-    fireflies_.count({prediction_, old_age_, samples_, variance_}, {light_, residual_, confirmed_},
-                     strip.area);
   });
   for (const TileCount& count : counts_) {
     report_.surface_pixels += count.surface;
@@ -240,29 +247,21 @@ float EigenDenoiser::longest_age(int tile) const {
 }
 
 void EigenDenoiser::shorten_memory(const Tile& tile) {
-  const float longest = longest_age(tile.index);
-  if (!frame_.is_static && options_.edge < options_.innovation.max_age) {
-    shorten_edge_ages({frame_, samples_}, options_.taps,
-                      std::min(options_.edge, kEdgeShare * longest), tile, new_age_);
-  }
-  if (!(longest < options_.innovation.max_age)) return;
-  for (int y = tile.y0; y < tile.y1; ++y) {
-    float* age = new_age_.at(tile.x0, y);
-    const float* samples = samples_.at(tile.x0, y);
-    for (int i = 0; i < tile.x1 - tile.x0; ++i) {
-      // An age below the frame's own samples would weigh them more than once.
-      age[i] = std::min(age[i], std::max(longest, samples[i]));
-    }
-  }
+  const float inside = longest_age(tile.index);
+  const float at_edges = has_edges_ ? std::min(options_.edge, kEdgeShare * inside) : inside;
+  if (!(at_edges < options_.innovation.max_age)) return;
+  shorten_ages(edge_, samples_, {inside, at_edges}, tile, new_age_);
 }
 
 void EigenDenoiser::update() {
   const int bases = std::max(memory_.active(), newborn_ + 1);
   // In place: what is written over need not be fetched first.
-  const bool in_place = bases == warped_bases_.bases();
-  if (in_place) std::swap(bases_, warped_bases_);
-  bases_.reshape(bases);
-  const BasisField& history = in_place ? bases_ : warped_bases_;
+  if (bases == warped_bases_.bases()) {
+    std::swap(bases_, warped_bases_);
+  } else {
+    bases_.reshape(bases);
+    bases_.assign(warped_bases_);
+  }
   for_each_strip(tiles_, [&](const Strip& strip) {
     innovation_tile({residual_, confirmed_, old_age_, samples_}, options_.innovation, strip.area,
                     {new_age_, variance_});
@@ -276,45 +275,30 @@ void EigenDenoiser::update() {
       }
     }
     for_each_segment(tiles_, strip, [&](const Tile& row) {
-      if (!is_empty(row)) update_row(history, row);
+      if (!is_empty(row)) update_row(row);
     });
   });
   if (newborn_ > 0) memory_.born(newborn_);
-  retire_bases();
+  for (const int k : memory_.retire()) bases_.clear_basis(k);
 }
 
-void EigenDenoiser::update_row(const BasisField& history, const Tile& row) {
+void EigenDenoiser::update_row(const Tile& row) {
   const Planes<3>* correction =
       correction_.is_open(row.index) ? &correction_.correction() : nullptr;
   update_tile({coefficients_, learning_, prediction_, correction, light_, samples_, old_age_,
                new_age_, memory_.active(), newborn_},
-              row, history, {bases_, output_});
+              row, {bases_, output_});
   estimate_variance({frame_.surface.id, new_age_, variance_, options_.young}, row,
                     {output_variance_, young_});
 }
 
 // What an earlier frame showed there is gone.
 void EigenDenoiser::clear_tile(const Tile& tile) {
-  for (int y = tile.y0; y < tile.y1; ++y) {
-    for (auto& plane : output_) std::fill(plane.at(tile.x0, y), plane.row(y) + tile.x1, 0.0f);
-    std::fill(new_age_.at(tile.x0, y), new_age_.row(y) + tile.x1, 0.0f);
-    std::fill(bases_.pixel(tile.x0, y), bases_.pixel(tile.x1 - 1, y) + bases_.pixel_floats(), 0.0f);
-    std::fill(output_variance_.at(tile.x0, y), output_variance_.row(y) + tile.x1, 0.0f);
-    std::fill(young_.at(tile.x0, y), young_.row(y) + tile.x1, std::uint8_t{0});
-  }
-}
-
-// Clears the bases that no tile uses any more.
-void EigenDenoiser::retire_bases() {
-  const std::vector<int> retired = memory_.retire();
-  if (retired.empty()) return;
-  for_each_segment(tiles_, [&](const Tile& row) {
-    for (int x = row.x0; x < row.x1; ++x) {
-      for (const int k : retired) {
-        for (int c = 0; c < 3; ++c) bases_.value(x, row.y0, c, k) = 0.0f;
-      }
-    }
-  });
+  for (auto& plane : output_) fill_tile(plane, tile, 0.0f);
+  fill_tile(new_age_, tile, 0.0f);
+  bases_.clear(tile);
+  fill_tile(output_variance_, tile, 0.0f);
+  fill_tile(young_, tile, std::uint8_t{0});
 }
 
 void EigenDenoiser::filter() {
@@ -351,7 +335,7 @@ void EigenDenoiser::save(StateWriter& out) const {
   surfaces_.save(out);
   out.value("bases", memory_.bases());
   out.value("bases in use", bases_.bases());
-  out.plane("basis values", bases_.data());
+  bases_.save(out);
   out.plane("variance", variance_);
   memory_.save(out);
 }
@@ -371,7 +355,7 @@ void EigenDenoiser::load(StateReader& in) {
   in.value("bases in use", bases);
   if (bases < 1 || bases > memory_.bases()) expect("bases in use", bases, memory_.active());
   bases_.reshape(bases);
-  in.plane("basis values", bases_.data());
+  bases_.load(in);
   in.plane("variance", variance_);
   memory_.load(in);
 }

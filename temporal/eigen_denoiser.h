@@ -31,7 +31,7 @@ struct EigenOptions {
   /// [1, 255] frames: the longest age where light changes in ways that no basis knows. A filter
   /// takes noise from the estimate later, but not what an old light left in it.
   float changing = 12.0f;
-  /// [1, 255] frames: the longest age at edges whose history is blended (edge_ages.h);
+  /// [1, 255] frames: the longest age at edges whose history is blended (edges.h);
   /// where light changes, two thirds of that of the pixels around, if that is less. From the
   /// longest age of all on, edges are like other pixels.
   float edge = 12.0f;
@@ -76,11 +76,10 @@ class EigenDenoiser final : public Denoiser {
   void project(bool resampled);
   void predict(bool resampled);
   void report_rank();
-  void retire_bases();
   [[nodiscard]] float longest_age(int tile) const;
   void shorten_memory(const Tile& tile);
   void update();
-  void update_row(const BasisField& history, const Tile& row);
+  void update_row(const Tile& row);
   void clear_tile(const Tile& tile);
   void filter();
   void fill_young();
@@ -111,9 +110,10 @@ class EigenDenoiser final : public Denoiser {
   CoefficientField coefficients_, learning_;
   std::vector<TileSums> sums_;
   int newborn_ = 0;
+  bool has_edges_ = false;  // in edge_
   std::vector<TileCount> counts_;
-  Plane<std::uint8_t> extra_, young_;
-  Planes<3> extra_mean_, light_, prediction_, guided_light_, output_;
+  Plane<std::uint8_t> extra_, edge_, young_;
+  Planes<3> light_, prediction_, guided_light_, output_;
   Plane<float> samples_, residual_, confirmed_, old_age_, new_age_, output_variance_;
 };
 

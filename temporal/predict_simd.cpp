@@ -2,7 +2,6 @@
 
 #include "frame/float_traps.h"
 #include "frame/prefetch.h"
-#include "reproject/basis_rows.h"
 #include "temporal/predict.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -33,16 +32,19 @@ VF FollowGain(VF variance, VF gain) {
   return hn::IfThenElse(hn::Lt(scaled, largest), scaled, largest);
 }
 
-void PredictVector(const BasisRows& rows, int bases, const CoefficientRows& coefficient, int rank,
+// The vector of pixels from column x of row y on, the i-th of its tile.
+void PredictVector(const BasisField& bases, const CoefficientRows& coefficient, int rank,
                    const Planes<3>& light, int x, int y, int i, const PredictOutputs& out) {
   const F d;
   const float weights[3] = {0.2126f, 0.7152f, 0.0722f};  // luminance, Rec. 709
+  const float* block = bases.at(x, y);
+  prefetch_below(bases, x, y);
   VF residual = hn::Zero(d);
   for (std::size_t c = 0; c < 3; ++c) {
-    const float(*values)[kSegment] = rows.values + static_cast<int>(c) * bases;
-    VF sum = hn::Mul(hn::Load(d, coefficient[0] + i), hn::Load(d, values[0] + i));
-    for (int k = 1; k < rank; ++k) {
-      sum = hn::MulAdd(hn::Load(d, coefficient[k] + i), hn::Load(d, values[k] + i), sum);
+    VF sum = hn::Zero(d);
+    for (int k = 0; k < rank; ++k) {
+      const float* basis = block + kBlock * bases.line_of(static_cast<int>(c), k);
+      sum = hn::MulAdd(hn::Load(d, coefficient[k] + i), hn::Load(d, basis), sum);
     }
     hn::StoreU(sum, d, out.prediction[c].row(y) + x);
     prefetch_below(light[c], x, y);
@@ -53,7 +55,7 @@ void PredictVector(const BasisRows& rows, int bases, const CoefficientRows& coef
   for (const Plane<float>* plane : {&out.residual, &out.confirmed, &out.variance}) {
     prefetch_below(*plane, x, y);
   }
-  const auto known = hn::Gt(hn::Load(d, rows.age + i), hn::Zero(d));
+  const auto known = hn::Gt(hn::Load(d, block + kBlock * 3 * bases.bases()), hn::Zero(d));
   // False of NaN.
   const auto confirmed = hn::And(known, hn::Le(hn::Abs(residual), hn::Set(d, kLargest)));
   hn::StoreU(hn::IfThenElseZero(confirmed, residual), d, out.residual.row(y) + x);
@@ -65,14 +67,11 @@ void PredictVector(const BasisRows& rows, int bases, const CoefficientRows& coef
 void PredictTile(const BasisField& bases, const CoefficientField& coefficients,
                  const Planes<3>& light, const Tile& tile, const PredictOutputs& out) {
   const int lanes = static_cast<int>(hn::Lanes(F())), rank = coefficients.used();
-  BasisRows rows;
   CoefficientRows coefficient;
   for (int y = tile.y0; y < tile.y1; ++y) {
-    const Tile segment{tile.x0, y, tile.x1, y + 1, tile.index};
-    load_rows(bases, segment, rows);
-    coefficients.rows(segment, rank, coefficient);
+    coefficients.rows({tile.x0, y, tile.x1, y + 1, tile.index}, rank, coefficient);
     for (int i = 0; i < tile.x1 - tile.x0; i += lanes) {
-      PredictVector(rows, bases.bases(), coefficient, rank, light, tile.x0 + i, y, i, out);
+      PredictVector(bases, coefficient, rank, light, tile.x0 + i, y, i, out);
     }
   }
 }

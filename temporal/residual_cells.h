@@ -1,6 +1,8 @@
 // The frame's residual in cells of 2 x 2 pixels, and back: smoothing it wants no finer grain.
 #pragma once
 
+#include <span>
+
 #include "frame/frame.h"
 #include "frame/tiles.h"
 
@@ -22,9 +24,11 @@ struct BlockCounts {
   int all = 0, significant = 0;
 };
 
-/// Counts the blocks of a tile whose left edge is a multiple of 8.
-[[nodiscard]] BlockCounts test_blocks(const CorrectionInputs& in, const Plane<float>& residual,
-                                      const Tile& tile);
+/// Counts the blocks of neighboring tiles of one row of a grid, `counts` for each of them from the
+/// left; all are `tile_width` pixels wide, a multiple of 8, but for the last of an image. `area` is
+/// all of their pixels, its upper left corner at multiples of 8.
+void test_blocks(const CorrectionInputs& in, const Plane<float>& residual, const Tile& area,
+                 int tile_width, std::span<BlockCounts> counts);
 
 /// Cell (X, Y) stands for the pixels 2 X + {0, 1}, 2 Y + {0, 1} that show the surface of its upper
 /// left one: same object, and normals within the cosine that taps ask for.

@@ -35,50 +35,67 @@ VB ResidualVariance(MB used, VB variance, VB samples, VB age) {
   return hn::IfThenElseZero(used, hn::Mul(variance, hn::Add(hn::Div(one, s), hn::Div(one, n))));
 }
 
-struct BlockSums {
-  double residual = 0.0, noise = 0.0, count = 0.0;
+// Sums over the rows of some blocks side by side, for each column of pixels.
+struct ColumnSums {
+  static constexpr int kColumns = 256;
+
+  alignas(64) float residual[kColumns], noise[kColumns], count[kColumns];
 };
 
-BlockSums SumBlock(const CorrectionInputs& in, const Plane<float>& residual, const Tile& block) {
+// Adds a row of at most kColumns pixels.
+void AddRow(const CorrectionInputs& in, const Plane<float>& residual, const Tile& row,
+            ColumnSums& sums) {
   const B d;
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  BlockSums sums;
-  for (int x = block.x0; x < block.x1; x += lanes) {
-    VB mean = hn::Zero(d), noise = hn::Zero(d), count = hn::Zero(d);
-    const auto inside = hn::FirstN(d, static_cast<std::size_t>(block.x1 - x));
-    for (int y = block.y0; y < block.y1; ++y) {
-      const auto load = [&](const Plane<float>& plane) {
-        prefetch_below(plane, x, y);
-        return hn::LoadU(d, plane.row(y) + x);
-      };
-      const MB used = hn::And(inside, hn::Gt(load(in.confirmed), hn::Zero(d)));
-      mean = hn::Add(mean, hn::IfThenElseZero(used, load(residual)));
-      noise =
-          hn::Add(noise, ResidualVariance(used, load(in.variance), load(in.samples), load(in.age)));
-      count = hn::Add(count, hn::IfThenElseZero(used, hn::Set(d, 1.0f)));
-    }
-    const auto total = [&](VB v) { return static_cast<double>(hn::GetLane(hn::SumOfLanes(d, v))); };
-    sums.residual += total(mean);
-    sums.noise += total(noise);
-    sums.count += total(count);
+  for (int x = row.x0; x < row.x1; x += static_cast<int>(hn::Lanes(d))) {
+    const auto load = [&](const Plane<float>& plane) {
+      prefetch_below(plane, x, row.y0);
+      return hn::LoadU(d, plane.row(row.y0) + x);
+    };
+    const auto inside = hn::FirstN(d, static_cast<std::size_t>(row.x1 - x));
+    const MB used = hn::And(inside, hn::Gt(load(in.confirmed), hn::Zero(d)));
+    const auto add = [&](VB value, float* to) {
+      hn::Store(hn::Add(hn::Load(d, to + x - row.x0), value), d, to + x - row.x0);
+    };
+    add(hn::IfThenElseZero(used, load(residual)), sums.residual);
+    add(ResidualVariance(used, load(in.variance), load(in.samples), load(in.age)), sums.noise);
+    add(hn::IfThenElseZero(used, hn::Set(d, 1.0f)), sums.count);
   }
-  return sums;
 }
 
-BlockCounts TestBlocks(const CorrectionInputs& in, const Plane<float>& residual, const Tile& tile) {
-  BlockCounts counts;
-  for (int y = tile.y0; y < tile.y1; y += kBlock) {
-    for (int x = tile.x0; x < tile.x1; x += kBlock) {
-      const BlockSums sums = SumBlock(
-          in, residual,
-          {x, y, std::min(x + kBlock, tile.x1), std::min(y + kBlock, tile.y1), tile.index});
-      counts.confirmed += static_cast<std::int64_t>(sums.count);
-      if (sums.count < kBlockPixels) continue;
-      ++counts.all;
-      counts.significant += sums.residual * sums.residual > kBlockChance * sums.noise ? 1 : 0;
+// The sum over the columns of one block.
+double SumBlock(const float* columns) {
+  const B d;
+  double sum = 0.0;
+  for (int i = 0; i < kBlock; i += static_cast<int>(hn::Lanes(d))) {
+    sum += static_cast<double>(hn::GetLane(hn::SumOfLanes(d, hn::Load(d, columns + i))));
+  }
+  return sum;
+}
+
+void CountBlock(const ColumnSums& sums, int column, BlockCounts& counts) {
+  const double count = SumBlock(sums.count + column);
+  counts.confirmed += static_cast<std::int64_t>(count);
+  if (count < kBlockPixels) return;
+  const double residual = SumBlock(sums.residual + column);
+  ++counts.all;
+  counts.significant += residual * residual > kBlockChance * SumBlock(sums.noise + column) ? 1 : 0;
+}
+
+// Row by row: those of a block are too short for the next one to be foreseen.
+void TestBlocks(const CorrectionInputs& in, const Plane<float>& residual, const Tile& area,
+                int tile_width, std::span<BlockCounts> counts) {
+  for (int y0 = area.y0; y0 < area.y1; y0 += kBlock) {
+    for (int x0 = area.x0; x0 < area.x1; x0 += ColumnSums::kColumns) {
+      const int x1 = std::min(x0 + ColumnSums::kColumns, area.x1);
+      ColumnSums sums{};
+      for (int y = y0; y < std::min(y0 + kBlock, area.y1); ++y) {
+        AddRow(in, residual, {x0, y, x1, y + 1, 0}, sums);
+      }
+      for (int x = x0; x < x1; x += kBlock) {
+        CountBlock(sums, x - x0, counts[static_cast<std::size_t>((x - area.x0) / tile_width)]);
+      }
     }
   }
-  return counts;
 }
 
 // The pixels of a vector of cells: upper left, upper right, lower left, lower right.
@@ -199,9 +216,9 @@ namespace eigenlight {
 HWY_EXPORT(TestBlocks);
 HWY_EXPORT(LoadCells);
 
-BlockCounts test_blocks(const CorrectionInputs& in, const Plane<float>& residual,
-                        const Tile& tile) {
-  return HWY_DYNAMIC_DISPATCH(TestBlocks)(in, residual, tile);
+void test_blocks(const CorrectionInputs& in, const Plane<float>& residual, const Tile& area,
+                 int tile_width, std::span<BlockCounts> counts) {
+  HWY_DYNAMIC_DISPATCH(TestBlocks)(in, residual, area, tile_width, counts);
 }
 
 void load_cells(const CorrectionInputs& in, const Planes<3>& prediction, const Tile& tile,

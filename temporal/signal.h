@@ -11,7 +11,8 @@ namespace eigenlight {
 struct SignalInputs {
   const Frame& frame;
   const Plane<std::uint8_t>* extra;  ///< samples granted beyond frame.spp, or null: none
-  const Planes<3>* extra_mean;       ///< of those, where there are any; null with `extra`
+  const Planes<3>* extra_mean;       ///< of those, where there are any; null with `extra`; may be
+                                     ///< the same as SignalOutputs::light
   const Plane<float>& age;           ///< of the history
 };
 

@@ -6,13 +6,16 @@
 
 #include "frame/frame.h"
 #include "reproject/basis_field.h"
-#include "reproject/basis_rows.h"
+#include "reproject/taps.h"
 
 namespace eigenlight {
 
 /// Light beyond this magnitude counts as not finite: float holds its square, and the sum of a
 /// window of 81 of them.
 inline constexpr float kLargestLight = 1e18f;
+
+/// Rows that accumulate_tile() best gets at once: that many are summed in float.
+inline constexpr int kSumRows = 4;
 
 /// Deviations beyond which a pixel's innovation loses influence; FireflyOptions has the same.
 inline constexpr float kOutlier = 8.0f;
@@ -51,7 +54,7 @@ struct SumInputs {
 ///   m = n / (n + 1) / (variance + 0.01 * luminance(V_0)^2)
 /// (the inverse of its expected squared innovation, n its age), and with 0 where it has no history
 /// or u is not finite or beyond kLargestLight. Where m luminance(r)^2 > kOutlier^2, m is divided by
-/// their ratio. Sums along a row are in float, over rows in double.
+/// their ratio. Sums over kSumRows rows are in float, over those in double.
 void accumulate_tile(const SumInputs& in, const Tile& tile, TileSums& sums);
 
 /// A few fireflies are no gain, a light that changed is: where more than an eighth of the pixels of

@@ -17,9 +17,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 using F = hn::ScalableTag<float>;
 using VF = hn::Vec<F>;
 
-// One row of a tile: the bases, the residual r = u - V_0 and the weight m of each pixel.
+// One row of a tile: the residual r = u - V_0 and the weight m of each pixel.
 struct Row {
-  BasisRows bases;
   alignas(64) float residual[3][kSegment];
   alignas(64) float weight[kSegment];
   int vectors;  // whole vectors of lanes that cover the row
@@ -32,6 +31,12 @@ VF Luminance(const VF (&v)[3]) {
                     hn::MulAdd(hn::Set(d, 0.7152f), v[1], hn::Mul(hn::Set(d, 0.0722f), v[2])));
 }
 
+// The vector of basis k that begins at pixel i of a segment.
+void Load(const BasisField& bases, const Tile& segment, int k, int i, VF (&v)[3]) {
+  const float* block = bases.at(segment.x0 + i, segment.y0);
+  for (int c = 0; c < 3; ++c) v[c] = hn::Load(F(), block + kBlock * bases.line_of(c, k));
+}
+
 // How many pixels of a row count, and how many of them are off by far more than expected.
 struct RowCount {
   std::size_t used = 0, outliers = 0;
@@ -40,9 +45,7 @@ struct RowCount {
 // Bounded, outliers lose influence.
 RowCount LoadRow(const SumInputs& in, const Tile& segment, bool is_bounded, Row& row) {
   const F d;
-  load_rows(in.bases, segment, row.bases);
-  const int bases = in.bases.bases(), lanes = static_cast<int>(hn::Lanes(d));
-  const int count = segment.x1 - segment.x0;
+  const int lanes = static_cast<int>(hn::Lanes(d)), count = segment.x1 - segment.x0;
   row.vectors = (count + lanes - 1) / lanes;
   const VF largest = hn::Set(d, kLargestLight), one = hn::Set(d, 1.0f);
   RowCount found;
@@ -52,9 +55,10 @@ RowCount LoadRow(const SumInputs& in, const Tile& segment, bool is_bounded, Row&
       prefetch_below(in.frame.indirect[static_cast<std::size_t>(c)], segment.x0 + i, segment.y0);
       u[c] = hn::LoadU(
           d, in.frame.indirect[static_cast<std::size_t>(c)].row(segment.y0) + segment.x0 + i);
-      v[c] = hn::Load(d, row.bases.values[c * bases] + i);
     }
-    const VF age = hn::Load(d, row.bases.age + i);
+    Load(in.bases, segment, 0, i, v);
+    const VF age =
+        hn::Load(d, in.bases.at(segment.x0 + i, segment.y0) + kBlock * 3 * in.bases.bases());
     // Comparisons with NaN are false; the age behind the last pixel is 0.
     const VF luminance = Luminance(v);
     prefetch_below(in.variance, segment.x0 + i, segment.y0);
@@ -82,60 +86,104 @@ RowCount LoadRow(const SumInputs& in, const Tile& segment, bool is_bounded, Row&
   return found;
 }
 
-// sum_c a_c b_c of one vector of pixels; the channels of a and b stand `a_step`, `b_step` apart.
-VF DotChannels(const float (*a)[kSegment], int a_step, const float (*b)[kSegment], int b_step) {
-  const F d;
-  VF sum = hn::Mul(hn::Load(d, a[0]), hn::Load(d, b[0]));
-  sum = hn::MulAdd(hn::Load(d, a[a_step]), hn::Load(d, b[b_step]), sum);
-  return hn::MulAdd(hn::Load(d, a[2 * a_step]), hn::Load(d, b[2 * b_step]), sum);
+// sum_c a_c b_c of one vector of pixels.
+VF Dot(const VF (&a)[3], const VF (&b)[3]) {
+  return hn::MulAdd(a[2], b[2], hn::MulAdd(a[1], b[1], hn::Mul(a[0], b[0])));
 }
 
-const float (*Shift(const float (*rows)[kSegment], int i))[kSegment] {
-  return reinterpret_cast<const float(*)[kSegment]>(rows[0] + i);
-}
+// Sums of a few rows, lane by lane; those of TileSums.
+struct LaneSums {
+  VF gram[kMaxBases * (kMaxBases + 1) / 2];
+  VF innovation[kMaxBases], spread[kMaxBases], lean[kMaxBases], reach[kMaxBases];
+};
 
-void AddRow(const Row& row, int bases, int active, TileSums& sums) {
-  const F d;
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  const auto total = [&](VF v) { return static_cast<double>(hn::GetLane(hn::SumOfLanes(d, v))); };
-  const float(*values)[kSegment] = row.bases.values;
+// Calls visit(lane sum, sum) for all of `active` bases.
+template <typename Visit>
+void ForEachSum(int active, LaneSums& lanes, TileSums& sums, const Visit& visit) {
   for (int j = 0; j < active; ++j) {
-    for (int k = 0; k <= j; ++k) {
-      VF sum = hn::Zero(d);
-      for (int i = 0; i < row.vectors * lanes; i += lanes) {
-        const VF dot = DotChannels(Shift(values + j, i), bases, Shift(values + k, i), bases);
-        sum = hn::MulAdd(hn::Load(d, row.weight + i), dot, sum);
-      }
-      sums.gram[static_cast<std::size_t>(packed(k, j))] += total(sum);
-    }
-    VF innovation = hn::Zero(d), spread = hn::Zero(d), lean = hn::Zero(d), reach = hn::Zero(d);
-    for (int i = 0; i < row.vectors * lanes; i += lanes) {
-      const VF weight = hn::Load(d, row.weight + i);
-      const VF dot = DotChannels(Shift(values + j, i), bases, Shift(row.residual, i), 1);
-      const VF first = DotChannels(Shift(values + j, i), bases, Shift(values, i), bases);
-      const VF weighted = hn::Mul(weight, dot), along = hn::Mul(weight, first);
-      innovation = hn::Add(innovation, weighted);
-      spread = hn::MulAdd(weighted, weighted, spread);
-      lean = hn::MulAdd(weighted, along, lean);
-      reach = hn::MulAdd(along, along, reach);
-    }
     const auto at = static_cast<std::size_t>(j);
-    sums.innovation[at] += total(innovation);
-    sums.spread[at] += total(spread);
-    sums.lean[at] += total(lean);
-    sums.reach[at] += total(reach);
+    for (int k = 0; k <= j; ++k) {
+      visit(lanes.gram[packed(k, j)], sums.gram[static_cast<std::size_t>(packed(k, j))]);
+    }
+    visit(lanes.innovation[j], sums.innovation[at]);
+    visit(lanes.spread[j], sums.spread[at]);
+    visit(lanes.lean[j], sums.lean[at]);
+    visit(lanes.reach[j], sums.reach[at]);
   }
 }
 
-void AddTile(const SumInputs& in, const Tile& tile, bool is_bounded, TileSums& sums) {
+// Products of basis j with those from the second on, up to itself.
+void AddGram(const BasisField& bases, const Tile& segment, const Row& row, int j, LaneSums& sums) {
+  const F d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  for (int k = 1; k <= j; ++k) {
+    VF sum = sums.gram[packed(k, j)];
+    for (int i = 0; i < row.vectors * lanes; i += lanes) {
+      VF a[3], b[3];
+      Load(bases, segment, j, i, a);
+      Load(bases, segment, k, i, b);
+      sum = hn::MulAdd(hn::Load(d, row.weight + i), Dot(a, b), sum);
+    }
+    sums.gram[packed(k, j)] = sum;
+  }
+}
+
+// Products of basis j with the first and with the residual, and what tells their noise.
+void AddInnovation(const BasisField& bases, const Tile& segment, const Row& row, int j,
+                   LaneSums& sums) {
+  const F d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  VF gram = sums.gram[packed(0, j)], innovation = sums.innovation[j];
+  VF spread = sums.spread[j], lean = sums.lean[j], reach = sums.reach[j];
+  for (int i = 0; i < row.vectors * lanes; i += lanes) {
+    VF own[3], steady[3], residual[3];
+    Load(bases, segment, j, i, own);
+    Load(bases, segment, 0, i, steady);
+    for (int c = 0; c < 3; ++c) residual[c] = hn::Load(d, row.residual[c] + i);
+    const VF weight = hn::Load(d, row.weight + i);
+    const VF weighted = hn::Mul(weight, Dot(own, residual));
+    const VF along = hn::Mul(weight, Dot(own, steady));
+    gram = hn::Add(gram, along);
+    innovation = hn::Add(innovation, weighted);
+    spread = hn::MulAdd(weighted, weighted, spread);
+    lean = hn::MulAdd(weighted, along, lean);
+    reach = hn::MulAdd(along, along, reach);
+  }
+  sums.gram[packed(0, j)] = gram;
+  sums.innovation[j] = innovation;
+  sums.spread[j] = spread;
+  sums.lean[j] = lean;
+  sums.reach[j] = reach;
+}
+
+void AddRows(const SumInputs& in, const Tile& rows, bool is_bounded, TileSums& sums) {
+  const int active = std::min(in.active, in.bases.bases());
+  LaneSums lanes;
+  ForEachSum(active, lanes, sums, [](VF& lane, double&) { lane = hn::Zero(F()); });
   Row row;
-  for (int y = tile.y0; y < tile.y1; ++y) {
-    const Tile segment{tile.x0, y, tile.x1, y + 1, tile.index};
+  std::size_t used = 0;
+  for (int y = rows.y0; y < rows.y1; ++y) {
+    const Tile segment{rows.x0, y, rows.x1, y + 1, rows.index};
     const RowCount found = LoadRow(in, segment, is_bounded, row);
     if (found.used == 0) continue;
-    sums.pixels += static_cast<double>(found.used);
+    used += found.used;
     sums.outliers += static_cast<double>(found.outliers);
-    AddRow(row, in.bases.bases(), std::min(in.active, in.bases.bases()), sums);
+    for (int j = 0; j < active; ++j) {
+      AddInnovation(in.bases, segment, row, j, lanes);
+      AddGram(in.bases, segment, row, j, lanes);
+    }
+  }
+  if (used == 0) return;
+  sums.pixels += static_cast<double>(used);
+  ForEachSum(active, lanes, sums, [](VF& lane, double& sum) {
+    sum += static_cast<double>(hn::GetLane(hn::SumOfLanes(F(), lane)));
+  });
+}
+
+void AddTile(const SumInputs& in, const Tile& tile, bool is_bounded, TileSums& sums) {
+  for (int y = tile.y0; y < tile.y1; y += kSumRows) {
+    AddRows(in, {tile.x0, y, tile.x1, std::min(y + kSumRows, tile.y1), tile.index}, is_bounded,
+            sums);
   }
 }
 

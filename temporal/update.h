@@ -19,7 +19,7 @@ struct UpdateInputs {
 };
 
 struct UpdateOutputs {
-  BasisField& bases;    ///< room for `active` and the newborn; other slots get 0
+  BasisField& bases;    ///< in and out; room for `active` and the newborn, other slots get 0
   Planes<3>& estimate;  ///< sum_k c_k V_k of the updated bases: this frame's temporal estimate
 };
 
@@ -32,9 +32,6 @@ struct UpdateOutputs {
 /// that is the running mean. A newborn basis starts as the correction instead, with c_k = 1. A new
 /// pixel has n = 0 and starts at the V of least energy that explains u. Pixels without usable
 /// samples keep what they have; those without history either stay 0.
-///
-/// `from` and out.bases may be the same field.
-void update_tile(const UpdateInputs& in, const Tile& tile, const BasisField& from,
-                 const UpdateOutputs& out);
+void update_tile(const UpdateInputs& in, const Tile& tile, const UpdateOutputs& out);
 
 }  // namespace eigenlight

@@ -1,6 +1,5 @@
 #include "frame/float_traps.h"
 #include "frame/prefetch.h"
-#include "reproject/basis_rows.h"
 #include "temporal/update.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -18,97 +17,109 @@ using VF = hn::Vec<F>;
 using MF = hn::Mask<F>;
 
 struct Row {
-  BasisRows from, to;
   CoefficientRows coefficient;  // c; c_0 is the gain
   CoefficientRows learning;     // q
 };
+
+// A vector of pixels from column x on of row y, the i-th of its tile. Lanes behind the last pixel
+// count as without samples and history, so that their bases and age stay 0.
+struct Place {
+  int x, y, i;
+  MF lanes;
+};
+
+VF Load(const Plane<float>& plane, const Place& at) {
+  prefetch_below(plane, at.x, at.y);
+  return hn::Load(F(), plane.row(at.y) + at.x);
+}
+
+void Store(VF v, const Place& at, Plane<float>& plane) {
+  prefetch_below(plane, at.x, at.y);
+  hn::Store(v, F(), plane.row(at.y) + at.x);
+}
 
 // What a vector of pixels does with all of its channels.
 struct Step {
   VF leverage;  // 1 / h
   VF weight;    // s / (n + h s)
+  VF age;
   MF usable, known;
 };
 
-// Leaves the age in row.to.
-Step FindStep(const UpdateInputs& in, const Tile& segment, int i, Row& row) {
+Step FindStep(const UpdateInputs& in, const Place& at, const Row& row) {
   const F d;
-  const auto load = [&](const Plane<float>& plane) {
-    prefetch_below(plane, segment.x0 + i, segment.y0);
-    return hn::LoadU(d, plane.row(segment.y0) + segment.x0 + i);
-  };
   const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-  VF h = hn::Load(d, row.learning[0] + i);
+  VF h = hn::Load(d, row.learning[0] + at.i);
   for (int k = 1; k < in.active; ++k) {
-    h = hn::MulAdd(hn::Load(d, row.coefficient[k] + i), hn::Load(d, row.learning[k] + i), h);
+    h = hn::MulAdd(hn::Load(d, row.coefficient[k] + at.i), hn::Load(d, row.learning[k] + at.i), h);
   }
   // M is positive definite, so h >= 1 / M_00 = 1 at tile centers; interpolation may fall short.
   h = hn::IfThenElse(hn::Gt(h, one), h, one);
-  const VF samples = load(in.samples), age = load(in.new_age);
+  const VF samples = Load(in.samples, at), age = Load(in.new_age, at);
   Step step;
-  step.usable = hn::Gt(samples, zero);
-  step.known = hn::Gt(load(in.old_age), zero);
+  step.usable = hn::And(at.lanes, hn::Gt(samples, zero));
+  step.known = hn::And(at.lanes, hn::Gt(Load(in.old_age, at), zero));
   const VF history =
       hn::IfThenElseZero(hn::And(step.known, hn::Gt(age, samples)), hn::Sub(age, samples));
   const VF total = hn::IfThenElse(step.usable, hn::MulAdd(h, samples, history), one);
   step.leverage = hn::Div(one, h);
   step.weight = hn::IfThenElseZero(step.usable, hn::Div(samples, total));
-  hn::Store(hn::IfThenElseZero(hn::Or(step.usable, step.known), age), d, row.to.age + i);
+  step.age = hn::IfThenElseZero(hn::Or(step.usable, step.known), age);
   return step;
 }
 
-// One channel of a vector of pixels. Returns the estimate.
-VF UpdateBases(const UpdateInputs& in, const Step& step, VF residual, VF correction, int channel,
-               int i, const BasisField& from_field, const BasisField& to_field, Row& row) {
+// Channel c of a vector of pixels. Returns the estimate.
+VF UpdateBases(const UpdateInputs& in, const Step& step, VF residual, VF correction, int c,
+               const Place& at, const Row& row, BasisField& bases) {
   const F d;
-  const float(*from)[kSegment] = row.from.values + channel * from_field.bases();
-  float(*to)[kSegment] = row.to.values + channel * to_field.bases();
+  float* block = bases.at(at.x, at.y);
+  const auto line = [&](int k) { return block + kBlock * bases.line_of(c, k); };
   VF move = hn::IfThenElseZero(step.usable, hn::Mul(step.weight, residual));
   if (in.newborn == 0) move = hn::MulAdd(correction, step.leverage, move);
-  const auto old = [&](int k) { return hn::IfThenElseZero(step.known, hn::Load(d, from[k] + i)); };
-  const auto q = [&](int k) { return hn::Load(d, row.learning[k] + i); };
-  const auto c = [&](int k) { return hn::Load(d, row.coefficient[k] + i); };
-  VF estimate = hn::MulAdd(q(0), move, hn::Mul(c(0), old(0)));
-  hn::Store(estimate, d, to[0] + i);
+  const auto learning = [&](int k) { return hn::Load(d, row.learning[k] + at.i); };
+  const auto coefficient = [&](int k) { return hn::Load(d, row.coefficient[k] + at.i); };
+  const auto old = [&](int k) { return hn::IfThenElseZero(step.known, hn::Load(d, line(k))); };
+  VF estimate = hn::MulAdd(learning(0), move, hn::Mul(coefficient(0), old(0)));
+  hn::Store(estimate, d, line(0));
   for (int k = 1; k < in.active; ++k) {
-    const VF value = hn::MulAdd(q(k), move, old(k));
-    hn::Store(value, d, to[k] + i);
-    estimate = hn::MulAdd(c(k), value, estimate);
+    const VF value = hn::MulAdd(learning(k), move, old(k));
+    hn::Store(value, d, line(k));
+    estimate = hn::MulAdd(coefficient(k), value, estimate);
   }
-  for (int k = in.active; k < to_field.bases(); ++k) hn::Store(hn::Zero(d), d, to[k] + i);
+  for (int k = in.active; k < bases.bases(); ++k) hn::Store(hn::Zero(d), d, line(k));
   if (in.newborn == 0) return estimate;
-  hn::Store(correction, d, to[in.newborn] + i);
+  hn::Store(correction, d, line(in.newborn));
   return hn::Add(estimate, correction);
 }
 
-void UpdateTile(const UpdateInputs& in, const Tile& tile, const BasisField& from,
-                const UpdateOutputs& out) {
+void UpdateVector(const UpdateInputs& in, const Place& at, const Row& row,
+                  const UpdateOutputs& out) {
+  const Step step = FindStep(in, at, row);
+  prefetch_below(out.bases, at.x, at.y);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const VF correction = in.correction == nullptr
+                              ? hn::Zero(F())
+                              : hn::IfThenElseZero(step.known, Load((*in.correction)[c], at));
+    const VF residual =
+        hn::Sub(Load(in.light[c], at), hn::Add(Load(in.prediction[c], at), correction));
+    Store(UpdateBases(in, step, residual, correction, static_cast<int>(c), at, row, out.bases), at,
+          out.estimate[c]);
+  }
+  hn::Store(step.age, F(), out.bases.at(at.x, at.y) + kBlock * 3 * out.bases.bases());
+}
+
+void UpdateTile(const UpdateInputs& in, const Tile& tile, const UpdateOutputs& out) {
   const F d;
   const int lanes = static_cast<int>(hn::Lanes(d));
   Row row;
   for (int y = tile.y0; y < tile.y1; ++y) {
     const Tile segment{tile.x0, y, tile.x1, y + 1, tile.index};
-    load_rows(from, segment, row.from);
     in.coefficients.rows(segment, in.active, row.coefficient);
     in.learning.rows(segment, in.active, row.learning);
-    for (int i = 0; i < tile.x1 - tile.x0; i += lanes) {
-      const Step step = FindStep(in, segment, i, row);
-      for (std::size_t c = 0; c < 3; ++c) {
-        const auto load = [&](const Planes<3>& planes) {
-          prefetch_below(planes[c], tile.x0 + i, y);
-          return hn::LoadU(d, planes[c].row(y) + tile.x0 + i);
-        };
-        const VF correction = in.correction == nullptr
-                                  ? hn::Zero(d)
-                                  : hn::IfThenElseZero(step.known, load(*in.correction));
-        const VF residual = hn::Sub(load(in.light), hn::Add(load(in.prediction), correction));
-        const VF estimate = UpdateBases(in, step, residual, correction, static_cast<int>(c), i,
-                                        from, out.bases, row);
-        prefetch_below(out.estimate[c], tile.x0 + i, y);
-        hn::StoreU(estimate, d, out.estimate[c].row(y) + tile.x0 + i);
-      }
+    for (int x = tile.x0; x < tile.x1; x += lanes) {
+      UpdateVector(in, {x, y, x - tile.x0, hn::FirstN(d, static_cast<std::size_t>(tile.x1 - x))},
+                   row, out);
     }
-    store_rows(row.to, segment, out.bases);
   }
 }
 
@@ -121,13 +132,11 @@ namespace eigenlight {
 
 HWY_EXPORT(UpdateTile);
 
-void update_tile(const UpdateInputs& in, const Tile& tile, const BasisField& from,
-                 const UpdateOutputs& out) {
+void update_tile(const UpdateInputs& in, const Tile& tile, const UpdateOutputs& out) {
   EL_DCHECK(tile.x1 - tile.x0 <= kCoefficientTile);
-  EL_DCHECK(in.active <= from.bases() && in.active <= out.bases.bases() &&
-            in.newborn < out.bases.bases());
+  EL_DCHECK(in.active <= out.bases.bases() && in.newborn < out.bases.bases());
   const FloatTrapsOff lanes_behind_masks_may_hold_anything;
-  HWY_DYNAMIC_DISPATCH(UpdateTile)(in, tile, from, out);
+  HWY_DYNAMIC_DISPATCH(UpdateTile)(in, tile, out);
 }
 
 }  // namespace eigenlight

@@ -24,7 +24,7 @@ struct EigenState {
     in.value("bases in use", used);
     EL_CHECK(bases == memory.bases(), "a history of {} bases, not {}", bases, memory.bases());
     field = BasisField(surfaces.previous().surface.depth.extent(), used);
-    in.plane("basis values", field.data());
+    field.load(in);
     in.plane("variance", variance);
     memory.load(in);
   }
@@ -35,7 +35,7 @@ struct EigenState {
     surfaces.save(out);
     out.value("bases", memory.bases());
     out.value("bases in use", field.bases());
-    out.plane("basis values", field.data());
+    field.save(out);
     out.plane("variance", variance);
     memory.save(out);
     StateReader in({out.bytes().data(), out.bytes().size()});

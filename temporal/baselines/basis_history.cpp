@@ -21,7 +21,8 @@ void drop_empty_taps(const BasisField& from, int count, TapSegment& taps) {
     for (std::size_t t = 0; t < 4; ++t) {
       float& weight = taps.weight[t][i];
       if (!(weight > 0.0f)) continue;
-      const bool empty = !(from.age(taps.x[t][i], taps.y[t][i]) > 0.0f);
+      const bool empty = !(from.age(taps.x[i] + static_cast<int>(t % 2),
+                                    taps.y[i] + static_cast<int>(t / 2)) > 0.0f);
       dropped = dropped || empty;
       if (empty) weight = 0.0f;
       sum += weight;
@@ -40,7 +41,7 @@ BasisHistory::Warp BasisHistory::warp(const Frame& frame) {
   EL_CHECK(frame.extent() == extent(), "frame {} is {}x{}, expected {}x{}", frame.index,
            frame.extent().width, frame.extent().height, extent().width, extent().height);
   if (!surfaces_.is_followed_by(frame)) {
-    bases_.data().fill(0.0f);
+    bases_.clear();
     return {.cut = true};
   }
   if (frame.is_static) return {.skipped = static_cast<std::int64_t>(extent().pixels())};
@@ -86,23 +87,23 @@ void BasisHistory::widen(const Frame& frame, const PreviousSurface& previous, gl
   if (!near) return;
   const TapRule rule(previous, taps_, point);
   const glm::ivec2 middle(glm::round(point.pixel));
-  float* to = warped_.pixel(x, y);
   float found = 0.0f;
+  float* to = warped_.at(x, y);
   for (int j = middle.y - 1; j <= middle.y + 1; ++j) {
     for (int i = middle.x - 1; i <= middle.x + 1; ++i) {
       if (!rule.accepts(i, j) || !(bases_.age(i, j) > 0.0f)) continue;
       found += 1.0f;
-      const float* from = bases_.pixel(i, j);
-      for (int k = 0; k < bases_.pixel_floats(); ++k) to[k] += from[k];
+      const float* from = bases_.at(i, j);
+      for (int k = 0; k < kBlock * bases_.lines(); k += kBlock) to[k] += from[k];
     }
   }
-  for (int k = 0; k < bases_.pixel_floats() && found > 0.0f; ++k) to[k] /= found;
+  for (int k = 0; k < kBlock * bases_.lines() && found > 0.0f; k += kBlock) to[k] /= found;
 }
 
 void BasisHistory::save(StateWriter& out) const {
   surfaces_.save(out);
   out.value("bases", bases_.bases());
-  out.plane("basis values", bases_.data());
+  bases_.save(out);
 }
 
 void BasisHistory::load(StateReader& in) {
@@ -112,7 +113,7 @@ void BasisHistory::load(StateReader& in) {
   if (bases != bases_.bases()) {
     throw std::runtime_error(fmt::format("state: {} bases, expected {}", bases, bases_.bases()));
   }
-  in.plane("basis values", bases_.data());
+  bases_.load(in);
 }
 
 }  // namespace eigenlight

@@ -10,7 +10,7 @@ namespace eigenlight {
 namespace {
 
 // Changes when the saved bytes do.
-constexpr std::uint32_t kStateVersion = 1;
+constexpr std::uint32_t kStateVersion = 2;
 constexpr int kOffsets = 16;  // after which the shifts of the blocks repeat
 
 }  // namespace

@@ -10,7 +10,7 @@ namespace eigenlight {
 namespace {
 
 // Changes when the saved bytes do.
-constexpr std::uint32_t kStateVersion = 1;
+constexpr std::uint32_t kStateVersion = 2;
 
 }  // namespace
 

@@ -50,14 +50,20 @@ class Center {
   glm::vec3 across_;  // its product with a distance is that off the plane, in units of the bound
 };
 
-Values filter_pixel(const Frame& frame, const BasisField& bases, glm::ivec2 p) {
-  const int count = 3 * bases.bases();
-  Values sum{};
-  const float* own = bases.pixel(p.x, p.y);
-  if (!is_usable_surface(frame.surface, p.x, p.y)) {
-    std::copy_n(own, count, sum.begin());
-    return sum;
+Values values_at(const BasisField& bases, int x, int y) {
+  Values values{};
+  for (int k = 0; k < bases.bases(); ++k) {
+    for (int c = 0; c < 3; ++c)
+      values[static_cast<std::size_t>(3 * k + c)] = bases.value(x, y, c, k);
   }
+  return values;
+}
+
+Values filter_pixel(const Frame& frame, const BasisField& bases, glm::ivec2 p) {
+  const auto count = static_cast<std::size_t>(3 * bases.bases());
+  const Values own = values_at(bases, p.x, p.y);
+  if (!is_usable_surface(frame.surface, p.x, p.y)) return own;
+  Values sum{};
   const Center center(frame, p);
   float weights = 0.0f;
   for (int y = p.y - kRadius; y <= p.y + kRadius; ++y) {
@@ -67,13 +73,12 @@ Values filter_pixel(const Frame& frame, const BasisField& bases, glm::ivec2 p) {
       const float w = center.weight({x, y});
       if (!(w > 0.0f)) continue;
       weights += w;
-      const float* values = bases.pixel(x, y);
-      for (int i = 0; i < count; ++i) sum[static_cast<std::size_t>(i)] += w * values[i];
+      const Values values = values_at(bases, x, y);
+      for (std::size_t i = 0; i < count; ++i) sum[i] += w * values[i];
     }
   }
-  for (int i = 0; i < count; ++i) {
-    float& value = sum[static_cast<std::size_t>(i)];
-    value = weights > 0.0f ? value / weights : own[i];
+  for (std::size_t i = 0; i < count; ++i) {
+    sum[i] = weights > 0.0f ? sum[i] / weights : own[i];
   }
   return sum;
 }
@@ -109,8 +114,9 @@ void NewPixelFilter::process(const Frame& frame, const Plane<std::uint8_t>& smoo
   for_each_tile(tiles_, [&](const Tile& tile) {
     const float* next = filtered_[static_cast<std::size_t>(tile.index)].data();
     for_marked(tile, [&](int x, int y) {
-      std::copy(next, next + count, bases.pixel(x, y));
-      next += count;
+      for (int k = 0; k < bases.bases(); ++k) {
+        for (int c = 0; c < 3; ++c) bases.value(x, y, c, k) = *next++;
+      }
     });
   });
 }

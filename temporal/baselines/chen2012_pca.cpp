@@ -6,7 +6,19 @@
 namespace eigenlight {
 namespace {
 
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr std::size_t packed(int i, int j) { return static_cast<std::size_t>(j * (j + 1) / 2 + i); }
+
+using Values = std::array<double, kMaxBases>;
+
+// Channel c of all bases of a pixel.
+Values values_at(const BasisField& bases, int x, int y, int c) {
+  Values values{};
+  for (int k = 0; k < bases.bases(); ++k) {
+    values[static_cast<std::size_t>(k)] = static_cast<double>(bases.value(x, y, c, k));
+  }
+  return values;
+}
 
 template <typename Visit>
 void for_pixels(const Tile& tile, const Visit& visit) {
@@ -27,10 +39,10 @@ template <typename Gram>
 Combination gram_schmidt(const Gram& gram, int bases) {
   Combination made{};
   const auto old_dot = [&](int a, int b) { return gram[packed(std::min(a, b), std::max(a, b))]; };
-  const auto row = [&](int i) -> auto& { return made[static_cast<std::size_t>(i)]; };
+  const auto row = [&](int i) -> auto& { return made[at(i)]; };
   for (int i = 0; i < bases; ++i) {
     std::array<double, kMaxBases> next{};
-    next[static_cast<std::size_t>(i)] = 1.0;
+    next[at(i)] = 1.0;
     double left = old_dot(i, i);
     for (int j = 0; j < i; ++j) {
       double cross = 0.0, square = 0.0;
@@ -77,11 +89,9 @@ void ImagePca::orthogonalize(BasisField& bases) {
   const Sums gram = reduce([&](const Tile& tile, Sums& sums) {
     for_pixels(tile, [&](int x, int y) {
       for (int c = 0; c < 3; ++c) {
-        const float* v = bases.pixel(x, y) + c * count;
+        const Values v = values_at(bases, x, y, c);
         for (int j = 0; j < count; ++j) {
-          for (int i = 0; i <= j; ++i) {
-            sums[packed(i, j)] += static_cast<double>(v[i]) * static_cast<double>(v[j]);
-          }
+          for (int i = 0; i <= j; ++i) sums[packed(i, j)] += v[at(i)] * v[at(j)];
         }
       }
     });
@@ -90,15 +100,11 @@ void ImagePca::orthogonalize(BasisField& bases) {
   for_each_tile(tiles_, [&](const Tile& tile) {
     for_pixels(tile, [&](int x, int y) {
       for (int c = 0; c < 3; ++c) {
-        float* v = bases.pixel(x, y) + c * count;
-        // Downwards, since a basis is made of those before it.
-        for (int i = count - 1; i >= 0; --i) {
+        const Values v = values_at(bases, x, y, c);
+        for (int i = 0; i < count; ++i) {
           double sum = 0.0;
-          for (int j = 0; j <= i; ++j) {
-            sum += combination[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] *
-                   static_cast<double>(v[j]);
-          }
-          v[i] = static_cast<float>(sum);
+          for (int j = 0; j <= i; ++j) sum += combination[at(i)][at(j)] * v[at(j)];
+          bases.value(x, y, c, i) = static_cast<float>(sum);
         }
       }
     });
@@ -126,7 +132,7 @@ void ImagePca::update(const PcaFrame& frame, BasisField& bases) {
 
 void ImagePca::deflate_and_measure(const PcaFrame& frame, const BasisField& bases, int i,
                                    Factors& factors) {
-  const int floats = bases.pixel_floats(), last = std::max(i - 1, 0);
+  const int last = std::max(i - 1, 0);
   const double projection = i > 0 ? factors.projection : 0.0;
   const Sums sums = reduce([&](const Tile& tile, Sums& sum) {
     double dot = 0.0, length = 0.0, energy = 0.0;
@@ -134,11 +140,13 @@ void ImagePca::deflate_and_measure(const PcaFrame& frame, const BasisField& base
       const float* weight = frame.weight.row(y);
       for (std::size_t c = 0; c < 3; ++c) {
         float* residual = residual_[c].row(y);
-        const float* values = bases.pixel(tile.x0, y) + static_cast<int>(c) * bases.bases();
-        for (int x = tile.x0; x < tile.x1; ++x, values += floats) {
+        for (int x = tile.x0; x < tile.x1; ++x) {
           if (!(weight[x] > 0.0f)) continue;
-          residual[x] -= static_cast<float>(projection * static_cast<double>(values[last]));
-          const double u = static_cast<double>(residual[x]), v = static_cast<double>(values[i]);
+          const auto basis = [&](int k) {
+            return static_cast<double>(bases.value(x, y, static_cast<int>(c), k));
+          };
+          residual[x] -= static_cast<float>(projection * basis(last));
+          const double u = static_cast<double>(residual[x]), v = basis(i);
           dot += u * v;
           length += v * v;
           energy += u * u;
@@ -156,21 +164,20 @@ void ImagePca::deflate_and_measure(const PcaFrame& frame, const BasisField& base
 }
 
 void ImagePca::advance(const PcaFrame& frame, BasisField& bases, int i, Factors& factors) {
-  const int floats = bases.pixel_floats();
   const Sums sums = reduce([&](const Tile& tile, Sums& sum) {
     double dot = 0.0, length = 0.0;
     for (int y = tile.y0; y < tile.y1; ++y) {
       const float* weight = frame.weight.row(y);
       for (std::size_t c = 0; c < 3; ++c) {
         const float* residual = residual_[c].row(y);
-        float* value = bases.pixel(tile.x0, y) + static_cast<int>(c) * bases.bases() + i;
-        for (int x = tile.x0; x < tile.x1; ++x, value += floats) {
+        for (int x = tile.x0; x < tile.x1; ++x) {
           const double w = static_cast<double>(weight[x]);
           if (!(w > 0.0)) continue;
           const double u = factors.lost ? 0.0 : static_cast<double>(residual[x]);
-          const double learned = (1.0 - w) * static_cast<double>(*value) + w * u * factors.dot;
-          *value = static_cast<float>(factors.starts ? u : learned);
-          const double v = static_cast<double>(*value);
+          float& value = bases.value(x, y, static_cast<int>(c), i);
+          const double learned = (1.0 - w) * static_cast<double>(value) + w * u * factors.dot;
+          value = static_cast<float>(factors.starts ? u : learned);
+          const double v = static_cast<double>(value);
           dot += u * v;
           length += v * v;
         }
@@ -184,17 +191,15 @@ void ImagePca::advance(const PcaFrame& frame, BasisField& bases, int i, Factors&
 
 int ImagePca::reconstruct(const PcaFrame& frame, const BasisField& bases, Planes<3>& out) {
   const int count = bases.bases();
-  const auto at = [](int i) { return static_cast<std::size_t>(i); };
   const Sums sums = reduce([&](const Tile& tile, Sums& sum) {
     for_pixels(tile, [&](int x, int y) {
       if (!(frame.weight(x, y) > 0.0f)) return;
       for (int c = 0; c < 3; ++c) {
         const double u = static_cast<double>(frame.light[at(c)](x, y));
-        const float* values = bases.pixel(x, y) + c * count;
+        const Values v = values_at(bases, x, y, c);
         for (int i = 0; i < count; ++i) {
-          const double v = static_cast<double>(values[i]);
-          sum[at(i)] += u * v;
-          sum[at(kMaxBases + i)] += v * v;
+          sum[at(i)] += u * v[at(i)];
+          sum[at(kMaxBases + i)] += v[at(i)] * v[at(i)];
         }
       }
     });
@@ -209,9 +214,9 @@ int ImagePca::reconstruct(const PcaFrame& frame, const BasisField& bases, Planes
   for_each_tile(tiles_, [&](const Tile& tile) {
     for_pixels(tile, [&](int x, int y) {
       for (int c = 0; c < 3; ++c) {
-        const float* values = bases.pixel(x, y) + c * count;
+        const Values v = values_at(bases, x, y, c);
         double sum = 0.0;
-        for (int i = 0; i < count; ++i) sum += projection[at(i)] * static_cast<double>(values[i]);
+        for (int i = 0; i < count; ++i) sum += projection[at(i)] * v[at(i)];
         out[at(c)](x, y) = static_cast<float>(sum);
       }
     });

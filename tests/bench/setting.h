@@ -19,7 +19,7 @@ namespace eigenlight {
 inline constexpr int kFloat = 4;  ///< bytes
 
 /// Bytes of a pixel's bases and age.
-inline int basis_bytes(int bases) { return BasisField::pixel_floats(bases) * kFloat; }
+inline int basis_bytes(int bases) { return (3 * bases + 1) * kFloat; }
 
 /// Instruction sets that this machine and this build have, best first.
 [[nodiscard]] inline const std::vector<std::int64_t>& bench_targets() {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <vector>
 
 #include "tests/support/extents.h"
@@ -33,13 +34,52 @@ TEST(Strips, CoverEachPixelOnceAndEachTileInOrder) {
 }
 
 TEST(Strips, AreAsWideAsTheirTilesAndNoWiderThanAllowed) {
-  const TileGrid grid({1000, 70}, 32, 32);
+  const TileGrid grid({3000, 70}, 32, 32);
   for_each_strip(grid, [&](const Strip& strip) {
     EXPECT_EQ(strip.area.x0, grid.tile(strip.area.index).x0);
     EXPECT_EQ(strip.area.x1, grid.tile(strip.area.index + strip.tiles - 1).x1);
     EXPECT_LE(strip.area.x1 - strip.area.x0, kStripWidth);
     EXPECT_EQ(strip.area.y1, grid.tile(strip.area.index).y1);
   });
+}
+
+TEST(Strips, AreWideForFewThreadsAndNarrowForMany) {
+  const TileGrid grid({1280, 720}, 32, 32);
+  const auto widest = [&](int threads) {
+    set_thread_count(threads);
+    std::atomic<int> strips = 0;
+    for_each_strip(grid, [&](const Strip&) { ++strips; });
+    set_thread_count(0);
+    return strips.load();
+  };
+  EXPECT_EQ(widest(1), 23);
+  EXPECT_EQ(widest(2), 23);
+  EXPECT_EQ(widest(4), 2 * 23);
+  EXPECT_EQ(widest(64), 5 * 23);
+}
+
+TEST(Strips, BandsCoverTheirStripInOrder) {
+  const TileGrid grid({300, 70}, 32, 32);
+  std::atomic<int> pixels = 0;
+  for_each_strip(grid, [&](const Strip& strip) {
+    int y = strip.area.y0;
+    for_each_band(strip, 5, [&](const Strip& band) {
+      EXPECT_EQ(band.area.y0, y);
+      EXPECT_LE(band.area.y1 - band.area.y0, 5);
+      y = band.area.y1;
+      int x = band.area.x0;
+      for_each_part(grid, band, [&](const Tile& part) {
+        EXPECT_EQ(part.x0, x);
+        EXPECT_EQ(part.y0, band.area.y0);
+        EXPECT_EQ(part.x1, grid.tile(part.index).x1);
+        x = part.x1;
+        pixels += part.pixels();
+      });
+      EXPECT_EQ(x, band.area.x1);
+    });
+    EXPECT_EQ(y, strip.area.y1);
+  });
+  EXPECT_EQ(pixels, 300 * 70);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // Twin of reproject/warp: one value of one pixel, in double.
 #pragma once
 
-#include "reproject/warp.h"
+#include "reproject/taps.h"
 
 namespace eigenlight::reference {
 
@@ -9,9 +9,10 @@ namespace eigenlight::reference {
 template <typename Value>
 double warped(const TapSegment& taps, std::size_t i, const Value& value) {
   double sum = 0.0;
-  for (std::size_t t = 0; t < 4; ++t) {
-    sum += static_cast<double>(taps.weight[t][i]) *
-           static_cast<double>(value(taps.x[t][i], taps.y[t][i]));
+  for (int t = 0; t < 4; ++t) {
+    const double weight = taps.weight[static_cast<std::size_t>(t)][i];
+    if (weight == 0.0) continue;  // may lie beside the image
+    sum += weight * static_cast<double>(value(taps.x[i] + t % 2, taps.y[i] + t / 2));
   }
   return sum;
 }

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 #include "tests/reference/warp.h"
 #include "tests/support/extents.h"
 #include "tests/support/random_frames.h"
@@ -10,105 +13,62 @@
 namespace eigenlight {
 namespace {
 
-TapSegment random_taps(Extent extent, std::uint32_t seed) {
+// Where the upper left tap of pixel x of a row lies.
+using Place = std::function<glm::ivec2(int x)>;
+
+// Taps of random weights, none of one pixel in five, 0 beside the image.
+TapSegment make_taps(Extent extent, const Tile& row, std::uint32_t seed, const Place& place) {
   TapSegment taps{};
-  for (int i = 0; i < kSegment; ++i) {
-    PixelRandom random(seed, i, 0);
-    const auto at = static_cast<std::size_t>(i);
-    const bool known = random.uniform() > 0.2f;
-    float left = 1.0f;
-    for (std::size_t t = 0; t < 4; ++t) {
-      const float share = t == 3 ? left : left * random.uniform();
-      left -= share;
-      taps.weight[t][at] = known ? share : 0.0f;
-      taps.x[t][at] = static_cast<int>(random.uniform() * static_cast<float>(extent.width));
-      taps.y[t][at] = static_cast<int>(random.uniform() * static_cast<float>(extent.height));
+  for (int x = row.x0; x < row.x1; ++x) {
+    PixelRandom random(seed, x, row.y0);
+    const auto i = static_cast<std::size_t>(x - row.x0);
+    const glm::ivec2 first = place(x);
+    taps.x[i] = std::clamp(first.x, -1, extent.width - 1);
+    taps.y[i] = std::clamp(first.y, -1, extent.height - 1);
+    if (random.uniform() < 0.2f) continue;
+    for (int t = 0; t < 4; ++t) {
+      const bool inside = extent.contains(taps.x[i] + t % 2, taps.y[i] + t / 2);
+      taps.weight[static_cast<std::size_t>(t)][i] = inside ? random.between(0.1f, 0.3f) : 0.0f;
     }
   }
   return taps;
 }
 
-void expect_warp(const BasisField& from, const TapSegment& taps, const Tile& row) {
+Place anywhere(Extent extent, std::uint32_t seed) {
+  return [=](int x) {
+    PixelRandom random(seed, x, 1);
+    return glm::ivec2(random.between(-1.0f, static_cast<float>(extent.width)),
+                      random.between(-1.0f, static_cast<float>(extent.height)));
+  };
+}
+
+BasisField warped(const BasisField& from, const TapSegment& taps, const Tile& row) {
   BasisField to(from.extent(), from.bases());
+  fill_bases(to, 5.0f);
   warp_bases(from, taps, row, to);
+  return to;
+}
+
+void expect_warp(const BasisField& from, const TapSegment& taps, const Tile& row) {
+  const BasisField to = warped(from, taps, row);
   for (int x = row.x0; x < row.x1; ++x) {
     const auto i = static_cast<std::size_t>(x - row.x0);
     const double age = reference::warped(taps, i, [&](int tx, int ty) { return from.age(tx, ty); });
-    EXPECT_NEAR(to.age(x, row.y0), age, 1e-5 * 40.0);
+    ASSERT_NEAR(to.age(x, row.y0), age, 1e-5 * 40.0);
     for (int c = 0; c < 3; ++c) {
       for (int k = 0; k < from.bases(); ++k) {
         const double wanted =
             reference::warped(taps, i, [&](int tx, int ty) { return from.value(tx, ty, c, k); });
         // Four products of values below 1.5: a few ulp.
-        EXPECT_NEAR(to.value(x, row.y0, c, k), wanted, 1e-6) << x << " channel " << c << " k " << k;
+        ASSERT_NEAR(to.value(x, row.y0, c, k), wanted, 1e-6) << x << " channel " << c << " k " << k;
       }
     }
-    for (int j = 3 * from.bases() + 1; j < from.pixel_floats(); ++j) {
-      EXPECT_EQ(to.pixel(x, row.y0)[j], 0.0f) << "padding";
-    }
   }
-}
-
-TEST(WarpBases, AgreesWithTheTwinForEveryNumberOfBasesOnEveryTarget) {
-  for (const Extent extent : kSweepExtents) {
-    for (int bases = 1; bases <= kMaxBases; ++bases) {
-      const BasisField from = random_bases(extent, bases, 7);
-      const TapSegment taps = random_taps(extent, 3);
-      const Tile row{0, extent.height / 2, std::min(extent.width, kSegment), extent.height / 2 + 1,
-                     0};
-      for_each_target([&] { expect_warp(from, taps, row); });
-    }
-  }
-}
-
-TEST(WarpBases, WritesOnlyTheRowItIsGiven) {
-  const Extent extent{65, 17};
-  const BasisField from = random_bases(extent, 3, 7);
-  BasisField to(extent, 3);
-  to.data().fill(5.0f);
-  warp_bases(from, random_taps(extent, 3), {32, 4, 64, 5, 0}, to);
-  for (int y = 0; y < extent.height; ++y) {
-    for (int x = 0; x < extent.width; ++x) {
-      if (y == 4 && x >= 32 && x < 64) continue;
-      ASSERT_EQ(to.value(x, y, 1, 1), 5.0f) << x << ", " << y;
-    }
-  }
-}
-
-TEST(WarpPlane, AgreesWithTheTwinAndIsZeroWithoutTaps) {
-  for (const Extent extent : kSweepExtents) {
-    const Plane<float> from = random_plane(extent, 9, 0.5f, 2.0f);
-    const TapSegment taps = random_taps(extent, 5);
-    const Tile row{0, extent.height - 1, std::min(extent.width, kSegment), extent.height, 0};
-    Plane<float> to(extent);
-    warp_plane(from, taps, row, to);
-    for (int x = row.x0; x < row.x1; ++x) {
-      const auto i = static_cast<std::size_t>(x);
-      EXPECT_NEAR(to(x, row.y0), reference::warped(taps, i, from), 1e-6);
-      const float sum = taps.weight[0][i] + taps.weight[1][i] + taps.weight[2][i];
-      const bool none = sum == 0.0f && taps.weight[3][i] == 0.0f;
-      EXPECT_EQ(to(x, row.y0) == 0.0f, none);
-    }
-  }
-}
-
-// Taps of neighbors that moved alike, but for one that is a pixel farther to the left; moved to the
-// image's edge where they lie beside it.
-TapSegment shifted_taps(Extent extent, const Tile& row, glm::ivec2 shift, int straggler) {
-  TapSegment taps = random_taps(extent, 5);
-  for (int i = 0; i < kSegment; ++i) {
-    const int left = row.x0 + i + shift.x - (i == straggler ? 1 : 0);
-    for (int t = 0; t < 4; ++t) {
-      const auto at = static_cast<std::size_t>(t), lane = static_cast<std::size_t>(i);
-      taps.x[at][lane] = std::clamp(left + t % 2, 0, extent.width - 1);
-      taps.y[at][lane] = std::clamp(row.y0 + shift.y + t / 2, 0, extent.height - 1);
-    }
-  }
-  return taps;
 }
 
 void expect_plane_warp(const Plane<float>& from, const TapSegment& taps, const Tile& row) {
   Plane<float> to(from.extent());
+  to.fill(5.0f);
   warp_plane(from, taps, row, to);
   for (int x = row.x0; x < row.x1; ++x) {
     const auto i = static_cast<std::size_t>(x - row.x0);
@@ -116,19 +76,127 @@ void expect_plane_warp(const Plane<float>& from, const TapSegment& taps, const T
   }
 }
 
-TEST(WarpPlane, AgreesWithTheTwinWhereNeighborsMoveAlikeOnEveryTarget) {
-  for (const Extent extent : kSweepExtents) {
-    const Plane<float> from = random_plane(extent, 9, 0.5f, 2.0f);
-    for (int n = 0; n < 25 * 5; ++n) {
-      const int x0 = extent.width > kSegment && n % 2 == 0 ? kSegment : 0;
-      const int y = n % 3 == 0 ? extent.height - 1 : 0;
-      const Tile row{x0, y, std::min(extent.width, x0 + kSegment), y + 1, 0};
-      const int stragglers[] = {-1, 0, 1, 7, 16};
-      const TapSegment taps =
-          shifted_taps(extent, row, {n % 5 - 2, n / 5 % 5 - 2}, stragglers[n / 25]);
-      for_each_target([&] { expect_plane_warp(from, taps, row); });
+// All segments of the first, a middle and the last row.
+void for_each_row(Extent extent, const std::function<void(const Tile&)>& visit) {
+  for (const int y : {0, extent.height / 2, extent.height - 1}) {
+    for (int x0 = 0; x0 < extent.width; x0 += kSegment) {
+      visit({x0, y, std::min(x0 + kSegment, extent.width), y + 1, 0});
     }
   }
+}
+
+TEST(Warp, AgreesWithTheTwinForEveryNumberOfBasesOnEveryTarget) {
+  for (const Extent extent : kSweepExtents) {
+    for (int bases = 1; bases <= kMaxBases; ++bases) {
+      const BasisField from = random_bases(extent, bases, 7);
+      for_each_row(extent, [&](const Tile& row) {
+        const TapSegment taps = make_taps(extent, row, 3, anywhere(extent, 4));
+        for_each_target([&] { expect_warp(from, taps, row); });
+      });
+    }
+  }
+}
+
+// Neighbors that moved alike, but for one pixel, or those from one on, that lie a pixel to the
+// left.
+TEST(Warp, AgreesWithTheTwinWhereNeighborsMoveAlikeOnEveryTarget) {
+  for (const Extent extent : kSweepExtents) {
+    const BasisField from = random_bases(extent, 2, 7);
+    const Plane<float> plane = random_plane(extent, 9, 0.5f, 2.0f);
+    for (int n = 0; n < 25 * 5; ++n) {
+      const glm::ivec2 shift{n % 5 - 2, n / 5 % 5 - 2};
+      const int odd = std::array{-1, 0, 1, 7, 16}[static_cast<std::size_t>(n / 25)];
+      for_each_row(extent, [&](const Tile& row) {
+        const TapSegment taps = make_taps(extent, row, 5, [&](int x) {
+          const int i = x - row.x0;
+          const bool apart = n % 2 == 0 ? i == odd : i >= odd && odd >= 0;
+          return glm::ivec2(x + shift.x - (apart ? 1 : 0), row.y0 + shift.y);
+        });
+        for_each_target([&] {
+          expect_warp(from, taps, row);
+          expect_plane_warp(plane, taps, row);
+        });
+      });
+    }
+  }
+}
+
+TEST(Warp, WritesTheRowItIsGivenAndZerosBehindIt) {
+  const Extent extent{65, 17};
+  const BasisField from = random_bases(extent, 3, 7);
+  const Tile row{64, 4, 65, 5, 0};
+  const TapSegment taps = make_taps(extent, row, 3, anywhere(extent, 4));
+  for_each_target([&] {
+    const BasisField to = warped(from, taps, row);
+    for (int y = 0; y < extent.height; ++y) {
+      for (int x = 0; x < extent.width; ++x) {
+        if (y == 4 && x == 64) continue;
+        ASSERT_EQ(to.value(x, y, 1, 1), 5.0f) << x << ", " << y;
+      }
+      for (int line = 0; line < to.lines(); ++line) {
+        const float* block = to.at(64, y) + kBlock * line;
+        for (int i = 1; i < kBlock; ++i) ASSERT_EQ(block[i], 0.0f) << y << " line " << line;
+      }
+    }
+  });
+}
+
+// Also where it is what a tap beside the image, or of another run, would read.
+TEST(Warp, ReadsNoTapOfWeightZero) {
+  const Extent extent{65, 17};
+  Plane<float> from = random_plane(extent, 9, 0.5f, 2.0f);
+  const Tile row{0, 4, 64, 5, 0};
+  TapSegment taps = make_taps(extent, row, 3, [](int x) { return glm::ivec2(x - 1, 6); });
+  BasisField bases = random_bases(extent, 2, 7);
+  for (int x = 0; x < extent.width; x += 3) {
+    from(x, 7) = bases.value(x, 7, 2, 1) = std::numeric_limits<float>::quiet_NaN();
+  }
+  // Tap 2 of pixel x is (x - 1, 7), tap 3 (x, 7).
+  for (std::size_t i = 0; i < kSegment; ++i) {
+    if (i % 3 == 1) taps.weight[2][i] = 0.0f;
+    if (i % 3 == 0) taps.weight[3][i] = 0.0f;
+  }
+  for_each_target([&] {
+    Plane<float> to(extent);
+    warp_plane(from, taps, row, to);
+    const BasisField to_bases = warped(bases, taps, row);
+    for (int x = row.x0; x < row.x1; ++x) {
+      EXPECT_TRUE(std::isfinite(to(x, 4)) && std::isfinite(to_bases.value(x, 4, 2, 1))) << x;
+    }
+  });
+}
+
+TEST(BasisField, AssignedTakesWhatBothHave) {
+  const BasisField from = random_bases({65, 17}, 3, 7);
+  for (const int bases : {2, 5}) {
+    BasisField to({65, 17}, bases);
+    fill_bases(to, 4.0f);
+    to.assign(from);
+    for (int k = 0; k < bases; ++k) {
+      EXPECT_EQ(to.value(64, 16, 2, k), k < 3 ? from.value(64, 16, 2, k) : 0.0f);
+    }
+    EXPECT_EQ(to.age(64, 16), from.age(64, 16));
+    to.clear_basis(1);
+    EXPECT_EQ(to.value(64, 16, 2, 1), 0.0f);
+    EXPECT_EQ(to.value(64, 16, 2, 0), from.value(64, 16, 2, 0));
+  }
+  EXPECT_THROW(BasisField({64, 17}, 3).assign(from), std::invalid_argument);
+}
+
+TEST(BasisField, ForgetsATile) {
+  BasisField field({65, 17}, 2);
+  fill_bases(field, 4.0f);
+  field.clear(Tile{64, 3, 65, 5, 0});
+  EXPECT_EQ(field.value(64, 4, 2, 1), 0.0f);
+  EXPECT_EQ(field.age(64, 3), 0.0f);
+  EXPECT_EQ(field.age(63, 3), 4.0f);
+  EXPECT_EQ(field.age(64, 5), 4.0f);
+}
+
+TEST(BasisField, RefusesTooFewOrTooManyBases) {
+  EXPECT_THROW(BasisField({4, 4}, 0), std::invalid_argument);
+  EXPECT_THROW(BasisField({4, 4}, kMaxBases + 1), std::invalid_argument);
+  EXPECT_THROW(BasisField({0, 4}, 3), std::invalid_argument);
 }
 
 }  // namespace

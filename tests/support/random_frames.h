@@ -155,6 +155,16 @@ inline void fill_light(const RandomFrameOptions& options, PixelRandom& random, F
   return plane;
 }
 
+/// All values and ages, but not what rows hold behind their last pixel.
+inline void fill_bases(BasisField& field, float value) {
+  const auto [width, height] = field.extent();
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      for (int line = 0; line < field.lines(); ++line) field.at(x, y)[kBlock * line] = value;
+    }
+  }
+}
+
 /// V_0 in [0.5, 1.5), further bases in [-0.5, 0.5), ages in [1, 40); one pixel in ten has no
 /// history.
 [[nodiscard]] inline BasisField random_bases(Extent extent, int bases, std::uint32_t seed) {

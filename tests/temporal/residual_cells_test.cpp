@@ -130,25 +130,40 @@ TEST(ResidualCells, GiveAConstantResidualBackToEveryConfirmedPixel) {
   EXPECT_LT(left_out, confirmed / 20);
 }
 
+// Two tiles and the beginning of a third, of which every second block column differs.
 TEST(ResidualCells, BlocksAreSignificantWhereTheirMeanIsBeyondItsNoise) {
-  Scene scene({32, 32});
+  const Extent extent{613, 19};
+  Scene scene(extent);
   scene.confirmed.fill(1.0f);
   scene.samples.fill(1.0f);
   scene.age.fill(1e6f);
   scene.variance.fill(1.0f);
   // Means of 64 pixels have a standard deviation of 1/8: 3/8 is where chance ends.
-  for (int y = 0; y < 32; ++y) {
-    for (int x = 0; x < 32; ++x) scene.residual(x, y) = x < 16 ? 0.37f : 0.38f;
+  for (int y = 0; y < extent.height; ++y) {
+    for (int x = 0; x < extent.width; ++x) scene.residual(x, y) = x % 16 < 8 ? 0.37f : 0.38f;
   }
-  const BlockCounts counts = test_blocks(scene.in(), scene.residual, {0, 0, 32, 32, 0});
-  EXPECT_EQ(counts.all, 16);
-  EXPECT_EQ(counts.significant, 8);
-  EXPECT_EQ(counts.confirmed, 1024);
+  const auto count = [&] {
+    std::array<BlockCounts, 3> counts{};
+    test_blocks(scene.in(), scene.residual, {0, 0, extent.width, extent.height, 0}, 288, counts);
+    return counts;
+  };
+  for_each_target([&] {
+    const auto counts = count();
+    for (const std::size_t tile : {0U, 1U}) {
+      // 36 blocks in each of three rows; of the last, only three rows of pixels.
+      EXPECT_EQ(counts[tile].all, 3 * 36);
+      EXPECT_EQ(counts[tile].significant, 2 * 18);
+      EXPECT_EQ(counts[tile].confirmed, 288 * 19);
+    }
+    // 37 columns: of the last block five, in the last row 15 pixels, too few to ask.
+    EXPECT_EQ(counts[2].all, 3 * 5 - 1);
+    EXPECT_EQ(counts[2].confirmed, 37 * 19);
+  });
   // Too few pixels left to ask.
-  for (int y = 0; y < 32; ++y) {
-    for (int x = 0; x < 32; ++x) scene.confirmed(x, y) = y % 8 == 0 && x < 32 ? 1.0f : 0.0f;
+  for (int y = 0; y < extent.height; ++y) {
+    for (int x = 0; x < extent.width; ++x) scene.confirmed(x, y) = y % 8 == 0 ? 1.0f : 0.0f;
   }
-  EXPECT_EQ(test_blocks(scene.in(), scene.residual, {0, 0, 32, 32, 0}).all, 0);
+  for_each_target([&] { EXPECT_EQ(count()[1].all, 0); });
 }
 
 }  // namespace

@@ -93,7 +93,7 @@ TEST(TileSums, LeaveOutWhatCannotBeUsed) {
   Frame frame = make_random_frame({.extent = extent, .sky = false, .non_finite = false}, 2);
   const Plane<float> variance = random_plane(extent, 5, 0.05f, 0.6f);
   BasisField field(extent, 2);
-  field.data().fill(1.0f);
+  fill_bases(field, 1.0f);
   const auto pixels = [&] {
     TileSums sums;
     accumulate_tile({field, frame, variance}, {0, 0, 5, 3, 0}, sums);
@@ -144,7 +144,7 @@ TEST(TileSums, HoldBackALineOfOutliersAndFollowATileOfThem) {
   const Extent extent{32, 32};
   Frame frame = make_random_frame({.extent = extent, .sky = false, .non_finite = false}, 2);
   BasisField field(extent, 1);
-  field.data().fill(1.0f);
+  fill_bases(field, 1.0f);
   Plane<float> variance(extent);
   variance.fill(0.01f);
   const auto gain = [&](int rows) {

@@ -62,7 +62,7 @@ struct Scene {
   }
   void run() {
     for (int i = 0; i < coefficients.grid().count(); ++i) {
-      update_tile(in(), coefficients.grid().tile(i), field, {field, estimate});
+      update_tile(in(), coefficients.grid().tile(i), {field, estimate});
     }
   }
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "reproject/surface_history.h"
-#include "temporal/edge_ages.h"
+#include "temporal/edges.h"
 #include "temporal/eigen_denoiser.h"
 #include "tests/reference/guided_filter.h"
 #include "tests/reference/pipeline/cells.h"
@@ -83,7 +83,8 @@ class EigenTwin {
       for (std::size_t t = 0; t < 4; ++t) {
         const double w = static_cast<double>(taps.weight[t][at]);
         if (w == 0.0) continue;
-        const int i = taps.x[t][at], j = taps.y[t][at];
+        const int i = taps.x[at] + static_cast<int>(t % 2);
+        const int j = taps.y[at] + static_cast<int>(t / 2);
         for (int k = 0; k < kMaxBases; ++k) {
           for (std::size_t c = 0; c < 3; ++c) moved[k][c](x, y) += w * bases_[k][c](i, j);
         }
@@ -192,15 +193,11 @@ class EigenTwin {
 
   // By the fast kernel: where an edge is, geometry decides.
   [[nodiscard]] Plane<std::uint8_t> find_edges(const Frame& frame) const {
-    const Extent extent = new_age_.extent;
-    Plane<std::uint8_t> edges(extent);
-    Plane<float> age(extent), samples(extent);
-    age.fill(2.0f);
-    const TileGrid grid = stage_tiles(extent);
+    Plane<std::uint8_t> edges(new_age_.extent);
+    const TileGrid grid = stage_tiles(new_age_.extent);
     for (int i = 0; i < grid.count() && !frame.is_static; ++i) {
-      shorten_edge_ages({frame, samples}, options_.taps, 1.0f, grid.tile(i), age);
+      eigenlight::find_edges(frame, options_.taps, grid.tile(i), edges);
     }
-    new_age_.each([&](int x, int y) { edges(x, y) = age(x, y) < 2.0f ? 1 : 0; });
     return edges;
   }
 

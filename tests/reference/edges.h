@@ -1,10 +1,10 @@
-// Twin of temporal/edge_ages: one pixel, in double.
+// Twin of temporal/edges: one pixel, in double.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 
-#include "temporal/edge_ages.h"
+#include "temporal/edges.h"
 #include "tests/reference/surface_points.h"
 
 namespace eigenlight::reference {

@@ -2,10 +2,10 @@
 
 #include "frame/float_traps.h"
 #include "frame/prefetch.h"
-#include "temporal/edge_ages.h"
+#include "temporal/edges.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "temporal/edge_ages_simd.cpp"
+#define HWY_TARGET_INCLUDE "temporal/edges_simd.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -36,20 +36,6 @@ Seen Load(const GBuffer& surface, int x, int y) {
   return {{load(surface.normal[0]), load(surface.normal[1]), load(surface.normal[2])},
           load(surface.depth),
           hn::LoadU(I(), reinterpret_cast<const std::int32_t*>(surface.id.row(y)) + x)};
-}
-
-// One lane on by `step` of -1 or 1, but for the lane that has no next one, which stays.
-Seen Shift(const Seen& own, int step) {
-  const F d;
-  const I di;
-  const VI last = hn::Set(di, static_cast<int>(hn::Lanes(di)) - 1);
-  const VI next = hn::Add(hn::Iota(di, 0), hn::Set(di, step));
-  const VI lane = hn::Min(hn::Max(next, hn::Zero(di)), last);
-  const auto from = hn::IndicesFromVec(d, lane);
-  const auto shift = [&](VF v) { return hn::TableLookupLanes(v, from); };
-  return {{shift(own.normal[0]), shift(own.normal[1]), shift(own.normal[2])},
-          shift(own.depth),
-          hn::TableLookupLanes(own.id, hn::IndicesFromVec(di, lane))};
 }
 
 // What pixels ask of their neighbors.
@@ -98,23 +84,20 @@ MF Same(const Wanted& w, const Seen& seen, int x, int y) {
 }
 
 // The same of the neighbors to the left (step -1) or right (1); what is beside the image does not
-// count. At its edges the pixels themselves hold all the neighbors, and rows may end in memory.
-MF SameBeside(const Wanted& w, const Frame& frame, int x, int y, int step) {
+// count.
+MF SameBeside(const Wanted& w, const GBuffer& surface, int x, int y, int step) {
   const F d;
-  const int width = frame.extent().width, lanes = static_cast<int>(hn::Lanes(d));
-  const bool loads = step < 0 ? x > 0 : x + lanes < width;
-  if (loads) return Same(w, Load(frame.surface, x + step, y), x + step, y);
   const VF column = hn::Iota(d, static_cast<float>(x + step));
-  const MF outside =
-      hn::Or(hn::Lt(column, hn::Zero(d)), hn::Ge(column, hn::Set(d, static_cast<float>(width))));
-  return hn::Or(outside, Same(w, Shift(w.own, step), x + step, y));
+  const VF width = hn::Set(d, static_cast<float>(surface.depth.width()));
+  const MF outside = hn::Or(hn::Lt(column, hn::Zero(d)), hn::Ge(column, width));
+  return hn::Or(outside, Same(w, Load(surface, x + step, y), x + step, y));
 }
 
 // Where all neighbors show the pixel's own surface.
 MF IsInside(const Frame& frame, const TapOptions& options, int x, int y) {
   const GBuffer& surface = frame.surface;
   const Wanted wanted = Ask(frame, options, Load(surface, x, y), x, y);
-  MF same = hn::And(SameBeside(wanted, frame, x, y, -1), SameBeside(wanted, frame, x, y, 1));
+  MF same = hn::And(SameBeside(wanted, surface, x, y, -1), SameBeside(wanted, surface, x, y, 1));
   if (y > 0) same = hn::And(same, Same(wanted, Load(surface, x, y - 1), x, y - 1));
   if (y + 1 < frame.extent().height) {
     same = hn::And(same, Same(wanted, Load(surface, x, y + 1), x, y + 1));
@@ -122,28 +105,42 @@ MF IsInside(const Frame& frame, const TapOptions& options, int x, int y) {
   return same;
 }
 
-void ShortenEdgeAges(const EdgeInputs& in, const TapOptions& options, float longest,
-                     const Tile& tile, Plane<float>& age) {
+void FindEdges(const Frame& frame, const TapOptions& options, const Tile& tile,
+               Plane<std::uint8_t>& edge) {
   const F d;
   const I di;
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  const VF most = hn::Set(d, longest), blends = hn::Set(d, kBlends);
+  const hn::Rebind<std::uint8_t, F> bytes;
+  const VF blends = hn::Set(d, kBlends);
   for (int y = tile.y0; y < tile.y1; ++y) {
-    for (int x = tile.x0; x < tile.x1; x += lanes) {
-      const auto load = [&](const Plane<float>& plane) {
-        prefetch_below(plane, x, y);
-        return hn::LoadU(d, plane.row(y) + x);
-      };
-      const VF old = load(age), bound = hn::Max(most, load(in.samples));
-      const VF blend =
-          hn::Add(OffWhole(load(in.frame.motion[0])), OffWhole(load(in.frame.motion[1])));
+    for (int x = tile.x0; x < tile.x1; x += static_cast<int>(hn::Lanes(d))) {
+      const auto load = [&](const Plane<float>& plane) { return hn::LoadU(d, plane.row(y) + x); };
+      prefetch_below(frame.surface.depth, x, y);
+      const VF blend = hn::Add(OffWhole(load(frame.motion[0])), OffWhole(load(frame.motion[1])));
       const VI id =
-          hn::LoadU(di, reinterpret_cast<const std::int32_t*>(in.frame.surface.id.row(y)) + x);
-      const MF shown = hn::RebindMask(d, hn::Ne(id, hn::Zero(di)));
-      const MF asked = hn::And(shown, hn::And(hn::Gt(old, bound), hn::Gt(blend, blends)));
-      if (hn::AllFalse(d, asked)) continue;
-      const MF edge = hn::AndNot(IsInside(in.frame, options, x, y), asked);
-      hn::StoreU(hn::IfThenElse(edge, bound, old), d, age.row(y) + x);
+          hn::LoadU(di, reinterpret_cast<const std::int32_t*>(frame.surface.id.row(y)) + x);
+      MF found = hn::And(hn::RebindMask(d, hn::Ne(id, hn::Zero(di))), hn::Gt(blend, blends));
+      if (!hn::AllFalse(d, found)) found = hn::AndNot(IsInside(frame, options, x, y), found);
+      const VI flag = hn::IfThenElseZero(hn::RebindMask(di, found), hn::Set(di, 1));
+      hn::StoreU(hn::DemoteTo(bytes, flag), bytes, edge.row(y) + x);
+    }
+  }
+}
+
+void ShortenAges(const Plane<std::uint8_t>& edge, const Plane<float>& samples,
+                 const LongestAges& longest, const Tile& tile, Plane<float>& age) {
+  const F d;
+  const I di;
+  const hn::Rebind<std::uint8_t, F> bytes;
+  const VF inside = hn::Set(d, longest.inside), at_edges = hn::Set(d, longest.at_edges);
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    for (int x = tile.x0; x < tile.x1; x += static_cast<int>(hn::Lanes(d))) {
+      prefetch_below(edge, x, y);
+      const VI flag = hn::PromoteTo(di, hn::LoadU(bytes, edge.row(y) + x));
+      const MF is_edge = hn::RebindMask(d, hn::Ne(flag, hn::Zero(di)));
+      const VF most =
+          hn::Max(hn::IfThenElse(is_edge, at_edges, inside), hn::LoadU(d, samples.row(y) + x));
+      float* n = age.row(y) + x;
+      hn::StoreU(hn::Min(hn::LoadU(d, n), most), d, n);
     }
   }
 }
@@ -155,12 +152,19 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace eigenlight {
 
-HWY_EXPORT(ShortenEdgeAges);
+HWY_EXPORT(FindEdges);
+HWY_EXPORT(ShortenAges);
 
-void shorten_edge_ages(const EdgeInputs& in, const TapOptions& options, float longest,
-                       const Tile& tile, Plane<float>& age) {
+void find_edges(const Frame& frame, const TapOptions& options, const Tile& tile,
+                Plane<std::uint8_t>& edge) {
   const FloatTrapsOff lanes_behind_masks_may_hold_anything;
-  HWY_DYNAMIC_DISPATCH(ShortenEdgeAges)(in, options, longest, tile, age);
+  HWY_DYNAMIC_DISPATCH(FindEdges)(frame, options, tile, edge);
+}
+
+void shorten_ages(const Plane<std::uint8_t>& edge, const Plane<float>& samples,
+                  const LongestAges& longest, const Tile& tile, Plane<float>& age) {
+  const FloatTrapsOff lanes_behind_masks_may_hold_anything;
+  HWY_DYNAMIC_DISPATCH(ShortenAges)(edge, samples, longest, tile, age);
 }
 
 }  // namespace eigenlight
