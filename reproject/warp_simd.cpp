@@ -74,8 +74,9 @@ struct Terms {
       counts[2 * t] = hn::And(first, run.counts[t]);
       counts[2 * t + 1] = hn::AndNot(first, run.counts[t]);
       // Nothing counts in blocks beside the image: any other will do.
-      from[2 * t] = field.at(std::max(start, 0), y) + (x - start);
-      from[2 * t + 1] = field.at(end <= last_x ? end : 0, y) - (end - x);
+      const auto block = [&](int at) { return field.at(at >= 0 && at <= last_x ? at : 0, y); };
+      from[2 * t] = block(start) + (x - start);
+      from[2 * t + 1] = block(end) - (end - x);
     }
   }
 };
