@@ -1,5 +1,7 @@
 #include "reproject/surface_history.h"
 
+#include <utility>
+
 namespace eigenlight {
 
 void SurfaceHistory::keep(const Frame& frame) {
@@ -11,13 +13,23 @@ void SurfaceHistory::keep(const Frame& frame) {
   surface_.id.copy_from(frame.surface.id);
 }
 
-void SurfaceHistory::save(StateWriter& out) const {
-  out.value("known", known_);
-  out.value("index", index_);
-  out.value("camera", camera_);
-  out.plane("depth", surface_.depth);
-  out.planes("normal", surface_.normal);
-  out.plane("id", surface_.id);
+void SurfaceHistory::take(Frame& frame) {
+  known_ = true;
+  index_ = frame.index;
+  camera_ = frame.camera;
+  std::swap(surface_.depth, frame.surface.depth);
+  std::swap(surface_.normal, frame.surface.normal);
+  std::swap(surface_.id, frame.surface.id);
+}
+
+void SurfaceHistory::save(StateWriter& out, bool known, int index, const Camera& camera,
+                          const GBuffer& surface) {
+  out.value("known", known);
+  out.value("index", index);
+  out.value("camera", camera);
+  out.plane("depth", surface.depth);
+  out.planes("normal", surface.normal);
+  out.plane("id", surface.id);
 }
 
 void SurfaceHistory::load(StateReader& in) {

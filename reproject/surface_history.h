@@ -20,13 +20,23 @@ class SurfaceHistory {
 
   /// `frame` has the size of the history.
   void keep(const Frame& frame);
+  /// The same without copying, from a frame that is about to be overwritten: depth, normal and id
+  /// of `frame` hold anything then.
+  void take(Frame& frame);
   void reset() { known_ = false; }  ///< whatever comes next is a cut
 
   /// load() throws std::runtime_error on data that is not such a state of this size.
-  void save(StateWriter& out) const;
+  void save(StateWriter& out) const { save(out, known_, index_, camera_, surface_); }
+  /// What save() would write after keep(frame).
+  static void save(StateWriter& out, const Frame& frame) {
+    save(out, true, frame.index, frame.camera, frame.surface);
+  }
   void load(StateReader& in);
 
  private:
+  static void save(StateWriter& out, bool known, int index, const Camera& camera,
+                   const GBuffer& surface);
+
   bool known_ = false;
   int index_ = 0;
   Camera camera_;

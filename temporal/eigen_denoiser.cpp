@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "frame/strips.h"
 #include "reproject/warp.h"
@@ -77,6 +78,8 @@ EigenDenoiser::EigenDenoiser(const DenoiserOptions& options, const EigenOptions&
 
 const Planes<3>* EigenDenoiser::step(FrameSource& source) {
   StageClock clock;
+  // Not before: until then the frame is the caller's to read.
+  if (!std::exchange(is_taken_, true)) surfaces_.take(frame_);
   if (!source.next(frame_)) return nullptr;
   start_frame(clock.lap());
   warp_history();
@@ -90,7 +93,7 @@ const Planes<3>* EigenDenoiser::step(FrameSource& source) {
   update();
   report_[Stage::kUpdate] = clock.lap();
   filter();
-  surfaces_.keep(frame_);
+  is_taken_ = false;
   report_[Stage::kFilter] = clock.lap();
   report_.rays = frame_.rays;
   report_.non_finite_samples = frame_.non_finite_samples;
@@ -332,7 +335,7 @@ void EigenDenoiser::fill_young() {
 
 void EigenDenoiser::save(StateWriter& out) const {
   out.value("eigenlight", kStateVersion);
-  surfaces_.save(out);
+  is_taken_ ? surfaces_.save(out) : SurfaceHistory::save(out, frame_);
   out.value("bases", memory_.bases());
   out.value("bases in use", bases_.bases());
   bases_.save(out);
@@ -350,6 +353,7 @@ void EigenDenoiser::load(StateReader& in) {
   in.value("eigenlight", version);
   expect("version", version, kStateVersion);
   surfaces_.load(in);
+  is_taken_ = true;
   in.value("bases", bases);
   expect("bases", bases, memory_.bases());
   in.value("bases in use", bases);

@@ -62,7 +62,10 @@ class EigenDenoiser final : public Denoiser {
   [[nodiscard]] const Frame& frame() const override { return frame_; }
   [[nodiscard]] const FrameReport& report() const override { return report_; }
   [[nodiscard]] const Plane<float>& age() const override { return new_age_; }
-  void reset() override { surfaces_.reset(); }
+  void reset() override {
+    surfaces_.reset();
+    is_taken_ = true;
+  }
   void save(StateWriter& out) const override;
   void load(StateReader& in) override;
 
@@ -92,6 +95,7 @@ class EigenDenoiser final : public Denoiser {
   Extent extent_;
   TileGrid tiles_;  // of coefficients
   Frame frame_;
+  bool is_taken_ = true;  // frame_ is in surfaces_, or there is none
   FrameReport report_;
 
   // History: warped and variance hold that of the frame before, brought to this one. Bases have
