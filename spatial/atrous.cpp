@@ -3,6 +3,7 @@
 #include <numeric>
 
 #include "frame/luminance.h"
+#include "frame/strips.h"
 #include "spatial/atrous_kernel.h"
 
 namespace eigenlight {

@@ -1,13 +1,9 @@
 // One pass of the a-trous filter over one tile; see atrous.h.
 #pragma once
 
-#include "frame/strips.h"
 #include "spatial/atrous.h"
 
 namespace eigenlight {
-
-/// Widest tile of the kernel.
-inline constexpr int kAtrousWidth = kStripWidth;
 
 struct AtrousPass {
   const Frame& guides;

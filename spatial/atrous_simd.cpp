@@ -18,7 +18,6 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 using F = hn::ScalableTag<float>;
 using VF = hn::Vec<F>;
-using Line = float[kAtrousWidth];
 
 // Taps -2 .. 2 by radius: none, binomial, B3-spline.
 constexpr float kKernel[3][5] = {{0.0f, 0.0f, 1.0f, 0.0f, 0.0f},
@@ -36,35 +35,32 @@ VF Luminance(VF r, VF g, VF b) {
                     hn::MulAdd(hn::Set(d, 0.7152f), g, hn::Mul(hn::Set(d, 0.0722f), b)));
 }
 
-// Variance of luminance around the pixels [x0, x0 + count) of row y: 3 x 3 binomial, edges
-// repeated.
-void SmoothVariance(const Plane<float>& variance, int x0, int count, int y, float* out) {
+// Variance of luminance around a vector of pixels at column x of row y: 3 x 3 binomial, edges
+// repeated. Decided vector by vector, so that bits do not depend on how wide a tile is.
+HWY_INLINE VF SmoothVariance(const Plane<float>& variance, int x, int y) {
+  const F d;
+  const int last = variance.width() - 1;
   const float* upper = variance.row(std::max(y - 1, 0));
   const float* middle = variance.row(y);
   const float* lower = variance.row(std::min(y + 1, variance.height() - 1));
-  float column[kAtrousWidth + 2];
-  const auto sum = [&](int x) { return upper[x] + 2.0f * middle[x] + lower[x]; };
-  if (x0 > 0 && x0 + count < variance.width()) {
-    const F d;
-    const int lanes = static_cast<int>(hn::Lanes(d));
-    const VF two = hn::Set(d, 2.0f), scale = hn::Set(d, 1.0f / 16.0f);
-    const auto vector = [&](int x) {
-      return hn::MulAdd(two, hn::LoadU(d, middle + x),
-                        hn::Add(hn::LoadU(d, upper + x), hn::LoadU(d, lower + x)));
-    };
-    for (int i = 0; i < count; i += lanes) {
-      const int x = x0 + i;
-      const VF sides = hn::Add(vector(x - 1), vector(x + 1));
-      hn::Store(hn::Mul(scale, hn::MulAdd(two, vector(x), sides)), d, out + i);
+  const auto inner = [](const float* row, int column) { return hn::LoadU(F(), row + column); };
+  const auto edge = [last](const float* row, int column) {
+    alignas(64) float values[hn::MaxLanes(F())];
+    for (int l = 0; l < static_cast<int>(hn::Lanes(F())); ++l) {
+      values[l] = row[std::clamp(column + l, 0, last)];
     }
-    return;
-  }
-  column[0] = sum(std::max(x0 - 1, 0));
-  for (int i = 0; i < count; ++i) column[i + 1] = sum(x0 + i);
-  column[count + 1] = sum(std::min(x0 + count, variance.width() - 1));
-  for (int i = 0; i < count; ++i) {
-    out[i] = (column[i] + 2.0f * column[i + 1] + column[i + 2]) * (1.0f / 16.0f);
-  }
+    return hn::Load(F(), values);
+  };
+  const auto smooth = [&](const auto& load) {
+    const VF two = hn::Set(d, 2.0f);
+    const auto column = [&](int at) {
+      return hn::MulAdd(two, load(middle, at), hn::Add(load(upper, at), load(lower, at)));
+    };
+    return hn::Mul(hn::Set(d, 1.0f / 16.0f),
+                   hn::MulAdd(two, column(x), hn::Add(column(x - 1), column(x + 1))));
+  };
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  return x > 0 && x + lanes <= last ? smooth(inner) : smooth(edge);
 }
 
 // What weighs a tap.
@@ -305,15 +301,13 @@ void FilterTile(const AtrousPass& pass, const Tile& tile) {
   constexpr int kSide = PlanarBlocks::kSide;
   const int margin = (reach + kSide - 1) / kSide;
   const Extent extent = pass.variance.extent();
-  alignas(64) Line smooth_variance = {};
   for (int y = tile.y0; y < tile.y1; ++y) {
-    if (kLight) SmoothVariance(pass.variance, tile.x0, tile.x1 - tile.x0, y, smooth_variance);
     TapRow found[2 * kRadius + 1];
     const std::span<const TapRow> rows(found,
                                        static_cast<std::size_t>(FindRows<kRadius>(pass, y, found)));
     const std::uint8_t* margins = pass.planar.margins(y / kSide);
     for (int x = tile.x0; x < tile.x1; x += lanes) {
-      const VF variance = hn::Load(d, smooth_variance + (x - tile.x0));
+      const VF variance = kLight ? SmoothVariance(pass.variance, x, y) : hn::Zero(d);
       const int last = std::min(x + lanes, extent.width) - 1;
       if (x - reach < 0 || x + lanes + reach > extent.width) {
         FilterVector<kRadius, Full>(pass, rows, EdgeTaps{x, pass.step, extent.width - 1}, y,
@@ -346,7 +340,6 @@ namespace eigenlight {
 HWY_EXPORT(AtrousTile);
 
 void atrous_tile(const AtrousPass& pass, const Tile& tile) {
-  EL_DCHECK(tile.x1 - tile.x0 <= kAtrousWidth);
   const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(AtrousTile)(pass, tile);
 }

@@ -10,8 +10,8 @@ namespace eigenlight {
 namespace {
 
 // Moving camera, changing light, a few bad samples: every stage has work.
-AnalyticOptions busy() {
-  AnalyticOptions options{.extent = {191, 107}, .frames = 8};
+AnalyticOptions busy(Extent extent = {191, 107}) {
+  AnalyticOptions options{.extent = extent, .frames = 8};
   options.slide = {0.7f, 0.3f};
   options.light = [](glm::vec2 at, int frame) {
     const float edge = at.x - 20.0f * static_cast<float>(frame);
@@ -30,18 +30,22 @@ struct RestoreLoops {
   int threads = thread_count();
 };
 
-Planes<3> last_picture(Lab& lab) {
-  StressRun run(lab, busy());
+Planes<3> last_picture(Lab& lab, const AnalyticOptions& options = busy()) {
+  StressRun run(lab, options);
   return copy_of(run.finish());
 }
 
+// A wide picture is walked in strips of other widths by more threads.
 StressFinding check_threads(Lab& lab) {
   const RestoreLoops restore;
-  set_thread_count(1);
-  const Planes<3> wanted = last_picture(lab);
-  for (const int threads : {2, 3, 8}) {
-    set_thread_count(threads);
-    lab.note(different_pixels(last_picture(lab), wanted), fmt::format("{} threads", threads));
+  for (const Extent extent : {Extent{191, 107}, Extent{1400, 70}}) {
+    set_thread_count(1);
+    const Planes<3> wanted = last_picture(lab, busy(extent));
+    for (const int threads : {2, 3, 8}) {
+      set_thread_count(threads);
+      lab.note(different_pixels(last_picture(lab, busy(extent)), wanted),
+               fmt::format("{} threads, {} pixels wide", threads, extent.width));
+    }
   }
   return worst_of(lab, 0.0);
 }
