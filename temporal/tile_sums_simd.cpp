@@ -17,78 +17,71 @@ namespace hn = hwy::HWY_NAMESPACE;
 using F = hn::ScalableTag<float>;
 using VF = hn::Vec<F>;
 
-// One row of a tile: the residual r = u - V_0 and the weight m of each pixel.
-struct Row {
-  alignas(64) float residual[3][kSegment];
-  alignas(64) float weight[kSegment];
-  int vectors;  // whole vectors of lanes that cover the row
-};
+using Color = VF[3];
 
 // Rec. 709 luminance.
-VF Luminance(const VF (&v)[3]) {
+VF Luminance(const Color& v) {
   const F d;
   return hn::MulAdd(hn::Set(d, 0.2126f), v[0],
                     hn::MulAdd(hn::Set(d, 0.7152f), v[1], hn::Mul(hn::Set(d, 0.0722f), v[2])));
 }
 
-// The vector of basis k that begins at pixel i of a segment.
-void Load(const BasisField& bases, const Tile& segment, int k, int i, VF (&v)[3]) {
-  const float* block = bases.at(segment.x0 + i, segment.y0);
-  for (int c = 0; c < 3; ++c) v[c] = hn::Load(F(), block + kBlock * bases.line_of(c, k));
+// sum_c a_c b_c
+VF Dot(const Color& a, const Color& b) {
+  return hn::MulAdd(a[2], b[2], hn::MulAdd(a[1], b[1], hn::Mul(a[0], b[0])));
 }
 
-// How many pixels of a row count, and how many of them are off by far more than expected.
-struct RowCount {
+// A vector of pixels in the block of its bases.
+struct Block {
+  const float* at;
+  int bases;
+
+  void Load(int k, Color& v) const {
+    for (int c = 0; c < 3; ++c) v[c] = hn::Load(F(), at + kBlock * (c * bases + k));
+  }
+  [[nodiscard]] VF Age() const { return hn::Load(F(), at + kBlock * 3 * bases); }
+};
+
+// What a vector of pixels brings: the residual r = u - V_0, the weight m of each pixel, how many
+// count, and how many of them are off by far more than expected.
+struct Pixels {
+  Color residual;
+  VF weight;
   std::size_t used = 0, outliers = 0;
 };
 
 // Bounded, outliers lose influence.
-RowCount LoadRow(const SumInputs& in, const Tile& segment, bool is_bounded, Row& row) {
+Pixels LoadPixels(const SumInputs& in, const Block& block, int x, int y, bool is_bounded) {
   const F d;
-  const int lanes = static_cast<int>(hn::Lanes(d)), count = segment.x1 - segment.x0;
-  row.vectors = (count + lanes - 1) / lanes;
   const VF largest = hn::Set(d, kLargestLight), one = hn::Set(d, 1.0f);
-  RowCount found;
-  for (int i = 0; i < count; i += lanes) {
-    VF u[3], v[3], residual[3];
-    for (int c = 0; c < 3; ++c) {
-      prefetch_below(in.frame.indirect[static_cast<std::size_t>(c)], segment.x0 + i, segment.y0);
-      u[c] = hn::LoadU(
-          d, in.frame.indirect[static_cast<std::size_t>(c)].row(segment.y0) + segment.x0 + i);
-    }
-    Load(in.bases, segment, 0, i, v);
-    const VF age =
-        hn::Load(d, in.bases.at(segment.x0 + i, segment.y0) + kBlock * 3 * in.bases.bases());
-    // Comparisons with NaN are false; the age behind the last pixel is 0.
-    const VF luminance = Luminance(v);
-    prefetch_below(in.variance, segment.x0 + i, segment.y0);
-    const VF variance = hn::LoadU(d, in.variance.row(segment.y0) + segment.x0 + i);
-    const VF expected = hn::MulAdd(hn::Mul(hn::Set(d, 0.01f), luminance), luminance, variance);
-    auto used = hn::And(hn::Gt(age, hn::Zero(d)), hn::Gt(expected, hn::Set(d, 1e-30f)));
-    for (const VF& value : u) used = hn::And(used, hn::Le(hn::Abs(value), largest));
-    VF weight = hn::Div(age, hn::Mul(hn::Add(age, one), hn::IfThenElse(used, expected, one)));
-    weight = hn::IfThenElseZero(used, weight);
-    for (int c = 0; c < 3; ++c) {
-      residual[c] = hn::IfThenElseZero(used, hn::Sub(u[c], v[c]));
-      hn::Store(residual[c], d, row.residual[c] + i);
-    }
-    found.used += hn::CountTrue(d, used);
-    if (is_bounded) {
-      const VF off = Luminance(residual);
-      const VF excess =
-          hn::Mul(hn::Mul(hn::Mul(weight, off), off), hn::Set(d, 1.0f / (kOutlier * kOutlier)));
-      const auto beyond = hn::Gt(excess, one);
-      weight = hn::Div(weight, hn::IfThenElse(beyond, excess, one));
-      found.outliers += hn::CountTrue(d, beyond);
-    }
-    hn::Store(weight, d, row.weight + i);
+  Color u, v;
+  for (std::size_t c = 0; c < 3; ++c) {
+    prefetch_below(in.frame.indirect[c], x, y);
+    u[c] = hn::LoadU(d, in.frame.indirect[c].row(y) + x);
   }
-  return found;
-}
-
-// sum_c a_c b_c of one vector of pixels.
-VF Dot(const VF (&a)[3], const VF (&b)[3]) {
-  return hn::MulAdd(a[2], b[2], hn::MulAdd(a[1], b[1], hn::Mul(a[0], b[0])));
+  block.Load(0, v);
+  const VF age = block.Age(), luminance = Luminance(v);
+  prefetch_below(in.variance, x, y);
+  const VF variance = hn::LoadU(d, in.variance.row(y) + x);
+  const VF expected = hn::MulAdd(hn::Mul(hn::Set(d, 0.01f), luminance), luminance, variance);
+  // Comparisons with NaN are false; the age behind the last pixel is 0.
+  auto used = hn::And(hn::Gt(age, hn::Zero(d)), hn::Gt(expected, hn::Set(d, 1e-30f)));
+  for (const VF& value : u) used = hn::And(used, hn::Le(hn::Abs(value), largest));
+  Pixels pixels;
+  for (int c = 0; c < 3; ++c) pixels.residual[c] = hn::IfThenElseZero(used, hn::Sub(u[c], v[c]));
+  pixels.used = hn::CountTrue(d, used);
+  VF weight = hn::Div(age, hn::Mul(hn::Add(age, one), hn::IfThenElse(used, expected, one)));
+  weight = hn::IfThenElseZero(used, weight);
+  if (is_bounded) {
+    const VF off = Luminance(pixels.residual);
+    const VF excess =
+        hn::Mul(hn::Mul(hn::Mul(weight, off), off), hn::Set(d, 1.0f / (kOutlier * kOutlier)));
+    const auto beyond = hn::Gt(excess, one);
+    weight = hn::Div(weight, hn::IfThenElse(beyond, excess, one));
+    pixels.outliers = hn::CountTrue(d, beyond);
+  }
+  pixels.weight = weight;
+  return pixels;
 }
 
 // Sums of a few rows, lane by lane; those of TileSums.
@@ -112,69 +105,47 @@ void ForEachSum(int active, LaneSums& lanes, TileSums& sums, const Visit& visit)
   }
 }
 
-// Products of basis j with those from the second on, up to itself.
-void AddGram(const BasisField& bases, const Tile& segment, const Row& row, int j, LaneSums& sums) {
-  const F d;
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  for (int k = 1; k <= j; ++k) {
-    VF sum = sums.gram[packed(k, j)];
-    for (int i = 0; i < row.vectors * lanes; i += lanes) {
-      VF a[3], b[3];
-      Load(bases, segment, j, i, a);
-      Load(bases, segment, k, i, b);
-      sum = hn::MulAdd(hn::Load(d, row.weight + i), Dot(a, b), sum);
+void AddPixels(const Pixels& pixels, const Block& block, int active, LaneSums& sums) {
+  Color steady;
+  block.Load(0, steady);
+  for (int j = 0; j < active; ++j) {
+    Color own;
+    block.Load(j, own);
+    for (VF& value : own) value = hn::Mul(pixels.weight, value);
+    const VF weighted = Dot(own, pixels.residual), along = Dot(own, steady);
+    const auto add = [](VF value, VF& sum) { sum = hn::Add(sum, value); };
+    const auto add_product = [](VF a, VF b, VF& sum) { sum = hn::MulAdd(a, b, sum); };
+    add(weighted, sums.innovation[j]);
+    add_product(weighted, weighted, sums.spread[j]);
+    add_product(weighted, along, sums.lean[j]);
+    add_product(along, along, sums.reach[j]);
+    add(along, sums.gram[packed(0, j)]);
+    for (int k = 1; k <= j; ++k) {
+      Color other;
+      block.Load(k, other);
+      add(Dot(own, other), sums.gram[packed(k, j)]);
     }
-    sums.gram[packed(k, j)] = sum;
   }
-}
-
-// Products of basis j with the first and with the residual, and what tells their noise.
-void AddInnovation(const BasisField& bases, const Tile& segment, const Row& row, int j,
-                   LaneSums& sums) {
-  const F d;
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  VF gram = sums.gram[packed(0, j)], innovation = sums.innovation[j];
-  VF spread = sums.spread[j], lean = sums.lean[j], reach = sums.reach[j];
-  for (int i = 0; i < row.vectors * lanes; i += lanes) {
-    VF own[3], steady[3], residual[3];
-    Load(bases, segment, j, i, own);
-    Load(bases, segment, 0, i, steady);
-    for (int c = 0; c < 3; ++c) residual[c] = hn::Load(d, row.residual[c] + i);
-    const VF weight = hn::Load(d, row.weight + i);
-    const VF weighted = hn::Mul(weight, Dot(own, residual));
-    const VF along = hn::Mul(weight, Dot(own, steady));
-    gram = hn::Add(gram, along);
-    innovation = hn::Add(innovation, weighted);
-    spread = hn::MulAdd(weighted, weighted, spread);
-    lean = hn::MulAdd(weighted, along, lean);
-    reach = hn::MulAdd(along, along, reach);
-  }
-  sums.gram[packed(0, j)] = gram;
-  sums.innovation[j] = innovation;
-  sums.spread[j] = spread;
-  sums.lean[j] = lean;
-  sums.reach[j] = reach;
 }
 
 void AddRows(const SumInputs& in, const Tile& rows, bool is_bounded, TileSums& sums) {
   const int active = std::min(in.active, in.bases.bases());
   LaneSums lanes;
   ForEachSum(active, lanes, sums, [](VF& lane, double&) { lane = hn::Zero(F()); });
-  Row row;
-  std::size_t used = 0;
+  std::size_t used = 0, outliers = 0;
   for (int y = rows.y0; y < rows.y1; ++y) {
-    const Tile segment{rows.x0, y, rows.x1, y + 1, rows.index};
-    const RowCount found = LoadRow(in, segment, is_bounded, row);
-    if (found.used == 0) continue;
-    used += found.used;
-    sums.outliers += static_cast<double>(found.outliers);
-    for (int j = 0; j < active; ++j) {
-      AddInnovation(in.bases, segment, row, j, lanes);
-      AddGram(in.bases, segment, row, j, lanes);
+    for (int x = rows.x0; x < rows.x1; x += static_cast<int>(hn::Lanes(F()))) {
+      const Block block{in.bases.at(x, y), in.bases.bases()};
+      const Pixels pixels = LoadPixels(in, block, x, y, is_bounded);
+      if (pixels.used == 0) continue;
+      used += pixels.used;
+      outliers += pixels.outliers;
+      AddPixels(pixels, block, active, lanes);
     }
   }
   if (used == 0) return;
   sums.pixels += static_cast<double>(used);
+  sums.outliers += static_cast<double>(outliers);
   ForEachSum(active, lanes, sums, [](VF& lane, double& sum) {
     sum += static_cast<double>(hn::GetLane(hn::SumOfLanes(F(), lane)));
   });
