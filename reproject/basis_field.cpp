@@ -17,7 +17,7 @@ void BasisField::assign(const BasisField& other) {
       for (int c = 0; c < 3; ++c) {
         for (int k = 0; k < both; ++k) copy(line_of(c, k), other.line_of(c, k));
       }
-      copy(3 * bases_, 3 * other.bases_);
+      std::copy_n(other.ages(x, y), kBlock, ages(x, y));
     }
   }
 }

@@ -49,6 +49,9 @@ class BasisField {
   /// apart.
   [[nodiscard]] float* at(int x, int y) { return data_.row(y) + offset(x); }
   [[nodiscard]] const float* at(int x, int y) const { return data_.row(y) + offset(x); }
+  /// Where its age lies, and those of the pixels beside it in the block.
+  [[nodiscard]] float* ages(int x, int y) { return at(x, y) + kBlock * 3 * bases_; }
+  [[nodiscard]] const float* ages(int x, int y) const { return at(x, y) + kBlock * 3 * bases_; }
 
   [[nodiscard]] float& value(int x, int y, int c, int k) {
     return at(x, y)[kBlock * line_of(c, k)];
@@ -56,8 +59,8 @@ class BasisField {
   [[nodiscard]] float value(int x, int y, int c, int k) const {
     return at(x, y)[kBlock * line_of(c, k)];
   }
-  [[nodiscard]] float& age(int x, int y) { return at(x, y)[kBlock * 3 * bases_]; }
-  [[nodiscard]] float age(int x, int y) const { return at(x, y)[kBlock * 3 * bases_]; }
+  [[nodiscard]] float& age(int x, int y) { return *ages(x, y); }
+  [[nodiscard]] float age(int x, int y) const { return *ages(x, y); }
 
   void clear() { data_.fill(0.0f); }
   /// Forgets the pixels of a tile, whose sides are whole blocks or those of the image.
@@ -72,7 +75,7 @@ class BasisField {
   void copy_ages(const Tile& row, Plane<float>& to) const {
     EL_DCHECK(row.x0 % kBlock == 0);
     for (int x = row.x0; x < row.x1; x += kBlock) {
-      std::copy_n(at(x, row.y0) + kBlock * 3 * bases_, kBlock, to.at(x, row.y0));
+      std::copy_n(ages(x, row.y0), kBlock, to.at(x, row.y0));
     }
   }
   /// Takes the ages of another field of the same extent, and its bases: as many as both have.

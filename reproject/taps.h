@@ -29,6 +29,8 @@ inline constexpr int kSegment = 64;
 struct TapSegment {
   alignas(64) std::array<std::array<float, kSegment>, 4> weight;
   alignas(64) std::array<std::int32_t, kSegment> x, y;
+
+  [[nodiscard]] glm::ivec2 tap(int t, std::size_t i) const { return {x[i] + t % 2, y[i] + t / 2}; }
 };
 
 /// The previous frame's surface, as far as taps need it.

@@ -145,18 +145,16 @@ Run TakeRun(const TapSegment& taps, std::size_t at, MF& left) {
   return run;
 }
 
-// Asks for what the row below will read: its own pixels, and the lower taps of a run.
-void PrefetchBelow(const Frame& current, int x, int y) {
-  for (const auto& plane : current.motion) prefetch_below(plane, x, y);
-  prefetch_below(current.previous_depth, x, y);
-  for (const auto& plane : current.surface.normal) prefetch_below(plane, x, y);
-  prefetch_below(current.surface.id, x, y);
+// Ask for what the row below will read: of its own pixels, and of the lower taps of a run.
+void PrefetchGuides(const GBuffer& surface, const Plane<float>& depth, int x, int y) {
+  prefetch_below(depth, x, y);
+  for (const auto& plane : surface.normal) prefetch_below(plane, x, y);
+  prefetch_below(surface.id, x, y);
 }
 
-void PrefetchBelow(const GBuffer& previous, int x, int y) {
-  prefetch_below(previous.depth, x, y);
-  for (const auto& plane : previous.normal) prefetch_below(plane, x, y);
-  prefetch_below(previous.id, x, y);
+void PrefetchBelow(const Frame& current, int x, int y) {
+  for (const auto& plane : current.motion) prefetch_below(plane, x, y);
+  PrefetchGuides(current.surface, current.previous_depth, x, y);
 }
 
 // Weights along one axis of the taps at floor(q) and one on, 0 outside the image.
@@ -218,7 +216,7 @@ void ComputeTaps(const Frame& current, const PreviousSurface& previous, const Ta
     MF left = hn::And(q.valid, hn::FirstN(d, static_cast<std::size_t>(row.x1 - x)));
     while (!hn::AllFalse(d, left)) {
       const Run run = TakeRun(taps, at, left);
-      PrefetchBelow(previous.surface, run.x, std::max(run.y + 1, 0));
+      PrefetchGuides(previous.surface, previous.surface.depth, run.x, run.y + 1);
       WeighRun(run, q, wx, wy, previous, options, rays, weight);
     }
     const VF sum = hn::Add(hn::Add(weight[0], weight[1]), hn::Add(weight[2], weight[3]));

@@ -35,34 +35,6 @@ VF Luminance(VF r, VF g, VF b) {
                     hn::MulAdd(hn::Set(d, 0.7152f), g, hn::Mul(hn::Set(d, 0.0722f), b)));
 }
 
-// Variance of luminance around a vector of pixels at column x of row y: 3 x 3 binomial, edges
-// repeated. Decided vector by vector, so that bits do not depend on how wide a tile is.
-HWY_INLINE VF SmoothVariance(const Plane<float>& variance, int x, int y) {
-  const F d;
-  const int last = variance.width() - 1;
-  const float* upper = variance.row(std::max(y - 1, 0));
-  const float* middle = variance.row(y);
-  const float* lower = variance.row(std::min(y + 1, variance.height() - 1));
-  const auto inner = [](const float* row, int column) { return hn::LoadU(F(), row + column); };
-  const auto edge = [last](const float* row, int column) {
-    alignas(64) float values[hn::MaxLanes(F())];
-    for (int l = 0; l < static_cast<int>(hn::Lanes(F())); ++l) {
-      values[l] = row[std::clamp(column + l, 0, last)];
-    }
-    return hn::Load(F(), values);
-  };
-  const auto smooth = [&](const auto& load) {
-    const VF two = hn::Set(d, 2.0f);
-    const auto column = [&](int at) {
-      return hn::MulAdd(two, load(middle, at), hn::Add(load(upper, at), load(lower, at)));
-    };
-    return hn::Mul(hn::Set(d, 1.0f / 16.0f),
-                   hn::MulAdd(two, column(x), hn::Add(column(x - 1), column(x + 1))));
-  };
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  return x > 0 && x + lanes <= last ? smooth(inner) : smooth(edge);
-}
-
 // What weighs a tap.
 template <bool kGeometryWeighs, bool kLightWeighs>
 struct Weighing {
@@ -188,6 +160,29 @@ struct EdgeTaps {
     return hn::IfThenElseZero(inside, hn::Set(d, weight));
   }
 };
+
+// Variance of luminance around a vector of pixels of row y: 3 x 3 binomial, edges repeated.
+template <typename Taps>
+HWY_INLINE VF SmoothVariance(const Plane<float>& variance, const Taps& taps, int y) {
+  const F d;
+  const VF two = hn::Set(d, 2.0f);
+  const float* upper = variance.row(std::max(y - 1, 0));
+  const float* middle = variance.row(y);
+  const float* lower = variance.row(std::min(y + 1, variance.height() - 1));
+  const auto column = [&](int j) {
+    return hn::MulAdd(two, taps.Load(middle, j), hn::Add(taps.Load(upper, j), taps.Load(lower, j)));
+  };
+  return hn::Mul(hn::Set(d, 1.0f / 16.0f),
+                 hn::MulAdd(two, column(0), hn::Add(column(-1), column(1))));
+}
+
+// Which taps load is decided vector by vector: bits do not hang on how wide a tile is.
+HWY_INLINE VF SmoothVariance(const Plane<float>& variance, int x, int y) {
+  const int last = variance.width() - 1;
+  return x > 0 && x + static_cast<int>(hn::Lanes(F())) <= last
+             ? SmoothVariance(variance, InnerTaps{x, 1}, y)
+             : SmoothVariance(variance, EdgeTaps{x, 1, last}, y);
+}
 
 // The eighth root of the weight of geometry: (N_p . N_q)^8 (1 - distance off the plane / 8).
 template <typename Taps>

@@ -113,9 +113,7 @@ bool Correction::open_gates() {
 // Forgets what an earlier frame lacked.
 void Correction::close_tile(const Tile& tile) {
   if (is_open(tile.index) || was_open_[static_cast<std::size_t>(tile.index)] == 0) return;
-  for (int y = tile.y0; y < tile.y1; ++y) {
-    for (auto& plane : correction_) std::fill(plane.at(tile.x0, y), plane.row(y) + tile.x1, 0.0f);
-  }
+  for (auto& plane : correction_) fill_tile(plane, tile, 0.0f);
 }
 
 // Cells are filtered that a pixel of an open tile can reach, and loaded that the filter can reach

@@ -181,7 +181,7 @@ bool EigenDenoiser::resample(FrameSource& source, std::int64_t planned) {
   return resampled;
 }
 
-// What history expects of this frame's samples. Strip by strip: light and prediction are still in
+// What history expects of this frame's samples. Band by band: light and prediction are still in
 // the cache when they are compared.
 void EigenDenoiser::predict(bool resampled) {
   const SignalInputs signal{frame_, resampled ? &extra_ : nullptr, resampled ? &light_ : nullptr,

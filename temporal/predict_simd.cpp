@@ -55,7 +55,7 @@ void PredictVector(const BasisField& bases, const CoefficientRows& coefficient, 
   for (const Plane<float>* plane : {&out.residual, &out.confirmed, &out.variance}) {
     prefetch_below(*plane, x, y);
   }
-  const auto known = hn::Gt(hn::Load(d, block + kBlock * 3 * bases.bases()), hn::Zero(d));
+  const auto known = hn::Gt(hn::Load(d, bases.ages(x, y)), hn::Zero(d));
   // False of NaN.
   const auto confirmed = hn::And(known, hn::Le(hn::Abs(residual), hn::Set(d, kLargest)));
   hn::StoreU(hn::IfThenElseZero(confirmed, residual), d, out.residual.row(y) + x);

@@ -33,13 +33,12 @@ VF Dot(const Color& a, const Color& b) {
 
 // A vector of pixels in the block of its bases.
 struct Block {
+  const BasisField& field;
   const float* at;
-  int bases;
 
   void Load(int k, Color& v) const {
-    for (int c = 0; c < 3; ++c) v[c] = hn::Load(F(), at + kBlock * (c * bases + k));
+    for (int c = 0; c < 3; ++c) v[c] = hn::Load(F(), at + kBlock * field.line_of(c, k));
   }
-  [[nodiscard]] VF Age() const { return hn::Load(F(), at + kBlock * 3 * bases); }
 };
 
 // What a vector of pixels brings: the residual r = u - V_0, the weight m of each pixel, how many
@@ -60,7 +59,7 @@ Pixels LoadPixels(const SumInputs& in, const Block& block, int x, int y, bool is
     u[c] = hn::LoadU(d, in.frame.indirect[c].row(y) + x);
   }
   block.Load(0, v);
-  const VF age = block.Age(), luminance = Luminance(v);
+  const VF age = hn::Load(d, in.bases.ages(x, y)), luminance = Luminance(v);
   prefetch_below(in.variance, x, y);
   const VF variance = hn::LoadU(d, in.variance.row(y) + x);
   const VF expected = hn::MulAdd(hn::Mul(hn::Set(d, 0.01f), luminance), luminance, variance);
@@ -135,7 +134,7 @@ void AddRows(const SumInputs& in, const Tile& rows, bool is_bounded, TileSums& s
   std::size_t used = 0, outliers = 0;
   for (int y = rows.y0; y < rows.y1; ++y) {
     for (int x = rows.x0; x < rows.x1; x += static_cast<int>(hn::Lanes(F()))) {
-      const Block block{in.bases.at(x, y), in.bases.bases()};
+      const Block block{in.bases, in.bases.at(x, y)};
       const Pixels pixels = LoadPixels(in, block, x, y, is_bounded);
       if (pixels.used == 0) continue;
       used += pixels.used;

@@ -105,7 +105,7 @@ void UpdateVector(const UpdateInputs& in, const Place& at, const Row& row,
     Store(UpdateBases(in, step, residual, correction, static_cast<int>(c), at, row, out.bases), at,
           out.estimate[c]);
   }
-  hn::Store(step.age, F(), out.bases.at(at.x, at.y) + kBlock * 3 * out.bases.bases());
+  hn::Store(step.age, F(), out.bases.ages(at.x, at.y));
 }
 
 void UpdateTile(const UpdateInputs& in, const Tile& tile, const UpdateOutputs& out) {

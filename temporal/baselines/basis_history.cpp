@@ -21,8 +21,8 @@ void drop_empty_taps(const BasisField& from, int count, TapSegment& taps) {
     for (std::size_t t = 0; t < 4; ++t) {
       float& weight = taps.weight[t][i];
       if (!(weight > 0.0f)) continue;
-      const bool empty = !(from.age(taps.x[i] + static_cast<int>(t % 2),
-                                    taps.y[i] + static_cast<int>(t / 2)) > 0.0f);
+      const glm::ivec2 tap = taps.tap(static_cast<int>(t), i);
+      const bool empty = !(from.age(tap.x, tap.y) > 0.0f);
       dropped = dropped || empty;
       if (empty) weight = 0.0f;
       sum += weight;

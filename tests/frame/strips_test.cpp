@@ -45,17 +45,17 @@ TEST(Strips, AreAsWideAsTheirTilesAndNoWiderThanAllowed) {
 
 TEST(Strips, AreWideForFewThreadsAndNarrowForMany) {
   const TileGrid grid({1280, 720}, 32, 32);
-  const auto widest = [&](int threads) {
+  const auto count_strips = [&](int threads) {
     set_thread_count(threads);
     std::atomic<int> strips = 0;
     for_each_strip(grid, [&](const Strip&) { ++strips; });
     set_thread_count(0);
     return strips.load();
   };
-  EXPECT_EQ(widest(1), 23);
-  EXPECT_EQ(widest(2), 23);
-  EXPECT_EQ(widest(4), 2 * 23);
-  EXPECT_EQ(widest(64), 5 * 23);
+  EXPECT_EQ(count_strips(1), 23);
+  EXPECT_EQ(count_strips(2), 23);
+  EXPECT_EQ(count_strips(4), 2 * 23);
+  EXPECT_EQ(count_strips(64), 5 * 23);
 }
 
 TEST(Strips, BandsCoverTheirStripInOrder) {

@@ -12,7 +12,8 @@ double warped(const TapSegment& taps, std::size_t i, const Value& value) {
   for (int t = 0; t < 4; ++t) {
     const double weight = taps.weight[static_cast<std::size_t>(t)][i];
     if (weight == 0.0) continue;  // may lie beside the image
-    sum += weight * static_cast<double>(value(taps.x[i] + t % 2, taps.y[i] + t / 2));
+    const glm::ivec2 tap = taps.tap(t, i);
+    sum += weight * static_cast<double>(value(tap.x, tap.y));
   }
   return sum;
 }

@@ -40,9 +40,8 @@ Count compare_with_twin(const Frame& current, const Frame& before) {
         for (std::size_t t = 0; t < 4; ++t) {
           // Weights are products of differences of pixel coordinates, over a sum of at least 0.01.
           EXPECT_NEAR(taps.weight[t][i], twin.weight[t], 2e-5) << x << ", " << y << " tap " << t;
-          const int step = static_cast<int>(t);
-          EXPECT_TRUE(taps.weight[t][i] == 0.0f ||
-                      extent.contains(taps.x[i] + step % 2, taps.y[i] + step / 2))
+          const glm::ivec2 tap = taps.tap(static_cast<int>(t), i);
+          EXPECT_TRUE(taps.weight[t][i] == 0.0f || extent.contains(tap.x, tap.y))
               << x << ", " << y << " tap " << t;
           used += twin.weight[t] > 0.0 ? 1 : 0;
         }

@@ -27,7 +27,8 @@ TapSegment make_taps(Extent extent, const Tile& row, std::uint32_t seed, const P
     taps.y[i] = std::clamp(first.y, -1, extent.height - 1);
     if (random.uniform() < 0.2f) continue;
     for (int t = 0; t < 4; ++t) {
-      const bool inside = extent.contains(taps.x[i] + t % 2, taps.y[i] + t / 2);
+      const glm::ivec2 tap = taps.tap(t, i);
+      const bool inside = extent.contains(tap.x, tap.y);
       taps.weight[static_cast<std::size_t>(t)][i] = inside ? random.between(0.1f, 0.3f) : 0.0f;
     }
   }

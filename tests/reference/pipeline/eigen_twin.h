@@ -83,8 +83,8 @@ class EigenTwin {
       for (std::size_t t = 0; t < 4; ++t) {
         const double w = static_cast<double>(taps.weight[t][at]);
         if (w == 0.0) continue;
-        const int i = taps.x[at] + static_cast<int>(t % 2);
-        const int j = taps.y[at] + static_cast<int>(t / 2);
+        const glm::ivec2 tap = taps.tap(static_cast<int>(t), at);
+        const int i = tap.x, j = tap.y;
         for (int k = 0; k < kMaxBases; ++k) {
           for (std::size_t c = 0; c < 3; ++c) moved[k][c](x, y) += w * bases_[k][c](i, j);
         }
