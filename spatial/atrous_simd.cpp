@@ -140,24 +140,39 @@ struct InnerTaps {
   [[nodiscard]] HWY_INLINE VF Kernel(float weight, int) const { return hn::Set(F(), weight); }
 };
 
-// Taps of which some lie beside the image: those weigh nothing.
+// Taps of which some lie beside the image: those are 0 and weigh nothing.
 struct EdgeTaps {
   int x, step, last;
 
-  [[nodiscard]] VF Load(const float* source, int j) const {
-    const F d;
-    alignas(64) float values[64];
-    for (int l = 0; l < static_cast<int>(hn::Lanes(d)); ++l) {
-      values[l] = source[std::clamp(x + j * step + l, 0, last)];
-    }
-    return hn::Load(d, values);
-  }
-  [[nodiscard]] VF Kernel(float weight, int j) const {
+  // Of the columns from the j-th tap of the first pixel on.
+  [[nodiscard]] hn::Mask<F> IsInside(int j) const {
     const F d;
     const VF column = hn::Iota(d, static_cast<float>(x + j * step));
-    const auto inside =
-        hn::And(hn::Ge(column, hn::Zero(d)), hn::Le(column, hn::Set(d, static_cast<float>(last))));
-    return hn::IfThenElseZero(inside, hn::Set(d, weight));
+    return hn::And(hn::Ge(column, hn::Zero(d)),
+                   hn::Le(column, hn::Set(d, static_cast<float>(last))));
+  }
+  // A vector that touches the row reads no further beside it than planes allow.
+  [[nodiscard]] VF Load(const float* source, int j) const {
+    const F d;
+    const int first = x + j * step;
+    if (first + static_cast<int>(hn::Lanes(d)) <= 0 || first > last) return hn::Zero(d);
+    return hn::IfThenElseZero(IsInside(j), hn::LoadU(d, source + first));
+  }
+  [[nodiscard]] VF Kernel(float weight, int j) const {
+    return hn::IfThenElseZero(IsInside(j), hn::Set(F(), weight));
+  }
+};
+
+// Taps of which those beside the image are its first or last pixel.
+struct RepeatedTaps {
+  int x, last;
+
+  [[nodiscard]] VF Load(const float* source, int j) const {
+    alignas(64) float values[64];
+    for (int l = 0; l < static_cast<int>(hn::Lanes(F())); ++l) {
+      values[l] = source[std::clamp(x + j + l, 0, last)];
+    }
+    return hn::Load(F(), values);
   }
 };
 
@@ -181,7 +196,7 @@ HWY_INLINE VF SmoothVariance(const Plane<float>& variance, int x, int y) {
   const int last = variance.width() - 1;
   return x > 0 && x + static_cast<int>(hn::Lanes(F())) <= last
              ? SmoothVariance(variance, InnerTaps{x, 1}, y)
-             : SmoothVariance(variance, EdgeTaps{x, 1, last}, y);
+             : SmoothVariance(variance, RepeatedTaps{x, last}, y);
 }
 
 // The eighth root of the weight of geometry: (N_p . N_q)^8 (1 - distance off the plane / 8).

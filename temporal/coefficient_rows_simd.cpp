@@ -33,6 +33,28 @@ struct NeighborWeights {
 };
 constexpr NeighborWeights kNeighbor;
 
+// The two tile rows around a row of pixels, blended, of all bases: in the tile's own column, and
+// how much more its neighbors have.
+struct Blend {
+  alignas(64) float own[kMaxBases], left[kMaxBases], right[kMaxBases];
+
+  Blend(const float* const (&upper)[3], const float* const (&lower)[3], float weight) {
+    const hn::CappedTag<float, kMaxBases> d;
+    for (int k = 0; k < kMaxBases; k += static_cast<int>(hn::Lanes(d))) {
+      const auto blend = [&](int column) {
+        const auto from = hn::LoadU(d, upper[column] + k);
+        const auto step = hn::Sub(hn::LoadU(d, lower[column] + k), from);
+        return hn::MulAdd(hn::Set(d, weight), step, from);
+      };
+      const auto middle = blend(1);
+      hn::Store(middle, d, own + k);
+      hn::Store(hn::Sub(blend(0), middle), d, left + k);
+      hn::Store(hn::Sub(blend(2), middle), d, right + k);
+    }
+    own[0] += 1.0f;
+  }
+};
+
 void FillRow(float own, float left, float right, float* out) {
   const F d;
   const int lanes = static_cast<int>(hn::Lanes(d));
@@ -44,7 +66,6 @@ void FillRow(float own, float left, float right, float* out) {
 
 void FillRows(const CoefficientField& field, const Tile& row, int count, CoefficientRows& out) {
   const TileGrid& grid = field.grid();
-  // Blend the two tile rows around y, for the tile's own column and its neighbors.
   const float ty = (static_cast<float>(row.y0) + 0.5f) / kCoefficientTile - 0.5f;
   const int y0 = std::clamp(static_cast<int>(std::floor(ty)), 0, grid.rows() - 1);
   const int y1 = std::min(y0 + 1, grid.rows() - 1);
@@ -55,10 +76,9 @@ void FillRows(const CoefficientField& field, const Tile& row, int count, Coeffic
     upper[i] = field.tile(y0 * grid.columns() + x).data();
     lower[i] = field.tile(y1 * grid.columns() + x).data();
   }
+  const Blend blend(upper, lower, fy);
   for (int k = 0; k < count; ++k) {
-    const auto blend = [&](int i) { return upper[i][k] + fy * (lower[i][k] - upper[i][k]); };
-    const float own = blend(1);
-    FillRow((k == 0 ? 1.0f : 0.0f) + own, blend(0) - own, blend(2) - own, out.values[k]);
+    FillRow(blend.own[k], blend.left[k], blend.right[k], out.values[k]);
   }
 }
 

@@ -87,7 +87,7 @@ CoefficientField::CoefficientField(Extent extent, int bases)
     : grid_(extent, kCoefficientTile, kCoefficientTile),
       bases_(bases),
       used_(bases),
-      values_(static_cast<std::size_t>(grid_.count() * bases), 0.0f) {}
+      values_(static_cast<std::size_t>(grid_.count() * kMaxBases), 0.0f) {}
 
 void solve_coefficients(std::span<const TileSums> sums, std::span<const double> expected,
                         const ShrinkOptions& options, CoefficientField& field) {

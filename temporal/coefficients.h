@@ -40,11 +40,12 @@ class CoefficientField {
   [[nodiscard]] int used() const { return used_; }
   void set_used(int used) { used_ = used; }
   [[nodiscard]] std::span<float> tile(int index) {
-    return {values_.data() + static_cast<std::size_t>(index * bases_),
+    return {values_.data() + static_cast<std::size_t>(index * kMaxBases),
             static_cast<std::size_t>(bases_)};
   }
+  /// Its data may be read up to kMaxBases.
   [[nodiscard]] std::span<const float> tile(int index) const {
-    return {values_.data() + static_cast<std::size_t>(index * bases_),
+    return {values_.data() + static_cast<std::size_t>(index * kMaxBases),
             static_cast<std::size_t>(bases_)};
   }
   /// c_0 to c_(count - 1) (the steady 1 of k = 0 included) along row y0 of the tile column that

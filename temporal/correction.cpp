@@ -36,25 +36,47 @@ Correction::Correction(Extent extent, const CorrectionOptions& options)
                                 .skip_planar = options.skip_planar}),
       correction_(make_planes<3>(extent)),
       factor_(cells_.extent()),
-      blocks_(static_cast<std::size_t>(gate_.grid().count())),
-      open_(blocks_.size()),
-      was_open_(blocks_.size()),
-      change_(blocks_.size()),
+      block_grid_(extent, kResidualBlock, kResidualBlock),
+      blocks_(static_cast<std::size_t>(block_grid_.count())),
+      tile_blocks_(static_cast<std::size_t>(gate_.grid().count())),
+      open_(tile_blocks_.size()),
+      was_open_(tile_blocks_.size()),
+      change_(tile_blocks_.size()),
       wanted_(static_cast<std::size_t>(grid_.count())),
       loaded_(wanted_.size()),
+      was_loaded_(wanted_.size()),
       corrected_(wanted_.size()) {
   options.validate();
 }
 
-double Correction::process(const CorrectionInputs& in, const Planes<3>& prediction,
-                           Plane<float>& residual) {
-  std::fill(blocks_.begin(), blocks_.end(), BlockCounts{});
-  for_each_strip(gate_.grid(), [&](const Strip& strip) {
-    test_blocks(in, residual, strip.area, kCoefficientTile,
-                std::span(blocks_).subspan(static_cast<std::size_t>(strip.area.index),
-                                           static_cast<std::size_t>(strip.tiles)));
-  });
+void Correction::count(const CorrectionInputs& in, const Tile& area) {
+  for (int y = area.y0; y < area.y1; y += kResidualBlock) {
+    const Tile row{area.x0, y, area.x1, std::min(y + kResidualBlock, area.y1), 0};
+    const int first = y / kResidualBlock * block_grid_.columns() + area.x0 / kResidualBlock;
+    const int blocks = (area.x1 - area.x0 + kResidualBlock - 1) / kResidualBlock;
+    test_blocks(in, row,
+                std::span(blocks_).subspan(static_cast<std::size_t>(first),
+                                           static_cast<std::size_t>(blocks)));
+    count_cells(in, row);
+  }
+}
+
+// A row of blocks is four rows of cells, all in one row of tiles.
+void Correction::count_cells(const CorrectionInputs& in, const Tile& row) {
+  const int end = (row.x1 + 1) / 2, y0 = row.y0 / 2, y1 = (row.y1 + 1) / 2;
+  for (int x = row.x0 / 2 / kCellStep * kCellStep, next = 0; x < end; x = next) {
+    const int column = x / grid_.tile_width();
+    next = std::min((column + 1) * grid_.tile_width(), end);
+    const int tile = y0 / grid_.tile_height() * grid_.columns() + column;
+    if (loaded_[static_cast<std::size_t>(tile)] != 0) load_cells(in, {x, y0, next, y1, 0}, cells_);
+  }
+}
+
+double Correction::process(const CorrectionInputs& in, Plane<float>& innovation) {
   std::swap(open_, was_open_);
+  std::swap(loaded_, was_loaded_);
+  std::fill(loaded_.begin(), loaded_.end(), std::uint8_t{0});
+  count_tiles();
   const bool any = open_gates();
   for_each_tile(gate_.grid(), [&](const Tile& tile) { close_tile(tile); });
   if (!any) return 0.0;
@@ -66,22 +88,35 @@ double Correction::process(const CorrectionInputs& in, const Planes<3>& predicti
       if (chosen[static_cast<std::size_t>(cells.index)] != 0) body(cells);
     });
   };
-  // These two read some twenty planes and need nothing of the rows around: line by line.
+  // This and the spreading read many planes and need nothing of the rows around: line by line.
   for_each_segment(grid_, [&](const Tile& row) {
-    if (loaded_[static_cast<std::size_t>(row.index)] != 0) load_cells(in, prediction, row, cells_);
+    const auto tile = static_cast<std::size_t>(row.index);
+    if (loaded_[tile] != 0 && was_loaded_[tile] == 0) load_cells(in, row, cells_);
   });
   filter_.process(cells_.guides, wanted_, cells_.mean, cells_.noise);
   on(loaded_, [&](const Tile& cells) { find_factor(cells); });
   std::fill(corrected_.begin(), corrected_.end(), 0);
   on(wanted_, [&](const Tile& cells) { weigh_cells(cells); });
   for_each_segment(gate_.grid(), [&](const Tile& row) {
-    if (is_open(row.index)) spread_cells(cells_, in, row, {correction_, residual});
+    if (is_open(row.index)) spread_cells(cells_, in.guides, row, {correction_, innovation});
   });
 
   std::int64_t confirmed = 0;
-  for (const BlockCounts& blocks : blocks_) confirmed += blocks.confirmed;
+  for (const ResidualBlock& block : blocks_) confirmed += block.confirmed;
   const auto corrected = std::accumulate(corrected_.begin(), corrected_.end(), std::int64_t{0});
   return confirmed > 0 ? static_cast<double>(corrected) / static_cast<double>(confirmed) : 0.0;
+}
+
+void Correction::count_tiles() {
+  constexpr int kSide = kCoefficientTile / kResidualBlock;
+  std::fill(tile_blocks_.begin(), tile_blocks_.end(), TileBlocks{});
+  for (int i = 0; i < block_grid_.count(); ++i) {
+    const int x = i % block_grid_.columns() / kSide, y = i / block_grid_.columns() / kSide;
+    TileBlocks& tile = tile_blocks_[static_cast<std::size_t>(y * gate_.grid().columns() + x)];
+    const ResidualBlock& block = blocks_[static_cast<std::size_t>(i)];
+    tile.all += block.is_asked ? 1 : 0;
+    tile.significant += block.is_significant ? 1 : 0;
+  }
 }
 
 // False if all gates are closed. A tile is open if it or a neighbor has a gate that is: gates are
@@ -92,8 +127,8 @@ bool Correction::open_gates() {
   for (int index = 0; index < grid.count(); ++index) {
     double all = 0.0, significant = 0.0;
     for_each_neighbor(grid, index, [&](std::size_t tile) {
-      all += blocks_[tile].all;
-      significant += blocks_[tile].significant;
+      all += tile_blocks_[tile].all;
+      significant += tile_blocks_[tile].significant;
     });
     // One block alone is no region: in a small image chance would open the gate with it.
     const double share = all > 0.0 ? (significant - 1.0) / all : 0.0;
@@ -120,7 +155,6 @@ void Correction::close_tile(const Tile& tile) {
 // from there.
 void Correction::choose_cells() {
   std::fill(wanted_.begin(), wanted_.end(), std::uint8_t{0});
-  std::fill(loaded_.begin(), loaded_.end(), std::uint8_t{0});
   const auto mark = [&](std::vector<std::uint8_t>& chosen, const Tile& area, int reach) {
     const int left = std::max(area.x0 - reach, 0) / grid_.tile_width();
     const int right = (area.x1 + reach - 1) / grid_.tile_width();

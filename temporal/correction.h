@@ -18,9 +18,9 @@ struct CorrectionOptions {
   void validate() const;  ///< throws std::invalid_argument naming the field
 };
 
-/// The smoothed innovation. r = u - prediction has variance v (1/s + 1/n); averaged over cells of
-/// 2 x 2 pixels, an edge-avoiding filter that looks at geometry only turns it into m with variance
-/// q, and
+/// The smoothed innovation. The residual u - prediction has variance v (1/s + 1/n); averaged over
+/// cells of 2 x 2 pixels, an edge-avoiding filter that looks at geometry only turns it into m with
+/// variance q, and
 ///   correction = m f g,   f = max(0, 1 - significance * q / luminance(m)^2), averaged over
 ///   those of 3 x 3 cells that have a confirmed pixel,
 /// is what the prediction lacks. A light that changes in a way no basis knows yet is so followed
@@ -33,10 +33,15 @@ class Correction {
  public:
   Correction(Extent extent, const CorrectionOptions& options);
 
-  /// Leaves what is to be added to `prediction` in correction(), and subtracts it from `residual`
-  /// (luminance of u - prediction). Returns the share of confirmed pixels corrected by more than
-  /// half.
-  double process(const CorrectionInputs& in, const Planes<3>& prediction, Plane<float>& residual);
+  /// Takes in the pixels of `area`, one or more blocks of 8 x 8 side by side: their blocks are
+  /// tested, and cells are filled that the last frame needed, while all of it is in the cache. To
+  /// be called for all of the image before process(), in any order and on any thread (apart: cells
+  /// are written up to 16 pixels beside the area); again for blocks that change.
+  void count(const CorrectionInputs& in, const Tile& area);
+  /// Leaves what is to be added to the prediction in correction(), and subtracts its luminance from
+  /// `innovation`, which may be that of the inputs. Returns the share of confirmed pixels corrected
+  /// by more than half.
+  double process(const CorrectionInputs& in, Plane<float>& innovation);
   /// Zero where the prediction lacks nothing.
   [[nodiscard]] const Planes<3>& correction() const { return correction_; }
   /// Whether the last frame may have corrected anything in a tile of the coefficients' grid.
@@ -48,6 +53,12 @@ class Correction {
   [[nodiscard]] std::int64_t skipped() const { return skipped_; }
 
  private:
+  struct TileBlocks {
+    int all = 0, significant = 0;
+  };
+
+  void count_cells(const CorrectionInputs& in, const Tile& row);
+  void count_tiles();
   [[nodiscard]] bool open_gates();
   void close_tile(const Tile& tile);
   void choose_cells();
@@ -64,12 +75,14 @@ class Correction {
   TileGrid grid_;  // of cells
   Atrous filter_;
   Planes<3> correction_;
-  Plane<float> factor_;                        // f of each cell
-  std::vector<BlockCounts> blocks_;            // per coefficient tile
-  std::vector<std::uint8_t> open_, was_open_;  // per coefficient tile
-  std::vector<float> change_;                  // g per coefficient tile
-  std::vector<std::uint8_t> wanted_, loaded_;  // per tile of cells
-  std::vector<std::int64_t> corrected_;        // confirmed pixels per tile of cells
+  Plane<float> factor_;  // f of each cell
+  TileGrid block_grid_;
+  std::vector<ResidualBlock> blocks_;
+  std::vector<TileBlocks> tile_blocks_;                     // per coefficient tile
+  std::vector<std::uint8_t> open_, was_open_;               // per coefficient tile
+  std::vector<float> change_;                               // g per coefficient tile
+  std::vector<std::uint8_t> wanted_, loaded_, was_loaded_;  // per tile of cells
+  std::vector<std::int64_t> corrected_;                     // confirmed pixels per tile of cells
   std::int64_t skipped_ = 0;
 };
 

@@ -63,13 +63,12 @@ EigenDenoiser::EigenDenoiser(const DenoiserOptions& options, const EigenOptions&
       extra_(extent_),
       edge_(extent_),
       young_(extent_),
-      light_(make_planes<3>(extent_)),
-      prediction_(make_planes<3>(extent_)),
+      residual_(make_planes<3>(extent_)),
+      innovation_(extent_),
+      expected_(extent_),
       guided_light_(make_planes<3>(extent_)),
       output_(make_planes<3>(extent_)),
       samples_(extent_),
-      residual_(extent_),
-      confirmed_(extent_),
       old_age_(extent_),
       new_age_(extent_),
       output_variance_(extent_) {
@@ -176,28 +175,33 @@ void EigenDenoiser::warp_row(const Tile& row) {
 }
 
 bool EigenDenoiser::resample(FrameSource& source, std::int64_t planned) {
-  const bool resampled = planned > 0 && source.resample(extra_, frame_, light_);
+  const bool resampled = planned > 0 && source.resample(extra_, frame_, residual_);
   if (resampled) report_.extra_samples = planned;
   return resampled;
 }
 
-// What history expects of this frame's samples. Band by band: light and prediction are still in
-// the cache when they are compared.
+CorrectionInputs EigenDenoiser::correction_inputs() const {
+  return {frame_, residual_, innovation_, old_age_, samples_, variance_};
+}
+
+// What history expects of this frame's samples, and how they differ. Band by band: each step finds
+// in the cache what the one before it left.
 void EigenDenoiser::predict(bool resampled) {
-  const SignalInputs signal{frame_, resampled ? &extra_ : nullptr, resampled ? &light_ : nullptr,
+  const SignalInputs signal{frame_, resampled ? &extra_ : nullptr, resampled ? &residual_ : nullptr,
                             old_age_};
   for_each_strip(tiles_, [&](const Strip& strip) {
     for_each_band(strip, kFireflyBlock, [&](const Strip& band) {
       for_each_segment(tiles_, band, [&](const Tile& row) {
-        const SignalCounts found = merge_samples(signal, row, {light_, samples_});
+        const SignalCounts found = merge_samples(signal, row, {residual_, samples_});
         TileCount& count = counts_[static_cast<std::size_t>(row.index)];
         count.fresh += found.fresh;
         count.non_finite += found.non_finite;
-        predict_tile(warped_bases_, coefficients_, light_, row,
-                     {prediction_, residual_, confirmed_, variance_});
+        predict_tile(warped_bases_, coefficients_, row,
+                     {residual_, innovation_, expected_, variance_});
       });
-      fireflies_.count({prediction_, old_age_, samples_, variance_},
-                       {light_, residual_, confirmed_}, band.area);
+      fireflies_.count({expected_, old_age_, samples_, variance_}, {residual_, innovation_},
+                       band.area);
+      if (options_.correct) correction_.count(correction_inputs(), band.area);
     });
   });
   for (const TileCount& count : counts_) {
@@ -214,11 +218,13 @@ void EigenDenoiser::project(bool resampled) {
   }
   coefficients_.set_used(memory_.active());
   predict(resampled);
-  report_.bounded_pixels = fireflies_.bound({prediction_, old_age_, samples_, variance_},
-                                            {light_, residual_, confirmed_});
-  const CorrectionInputs inputs{frame_, light_, confirmed_, old_age_, samples_, variance_};
+  report_.bounded_pixels = fireflies_.bound({expected_, old_age_, samples_, variance_},
+                                            {residual_, innovation_}, [&](const Tile& block) {
+                                              if (options_.correct)
+                                                correction_.count(correction_inputs(), block);
+                                            });
   const double corrected =
-      options_.correct ? correction_.process(inputs, prediction_, residual_) : 0.0;
+      options_.correct ? correction_.process(correction_inputs(), innovation_) : 0.0;
   report_.skipped_correction =
       options_.correct ? correction_.skipped() : static_cast<std::int64_t>(extent_.pixels());
   memory_.advance(coefficients_, learning_);
@@ -266,7 +272,7 @@ void EigenDenoiser::update() {
     bases_.assign(warped_bases_);
   }
   for_each_strip(tiles_, [&](const Strip& strip) {
-    innovation_tile({residual_, confirmed_, old_age_, samples_}, options_.innovation, strip.area,
+    innovation_tile({innovation_, old_age_, samples_}, options_.innovation, strip.area,
                     {new_age_, variance_});
     for (int i = strip.area.index; i < strip.area.index + strip.tiles; ++i) {
       if (is_empty(tiles_.tile(i))) {
@@ -288,8 +294,8 @@ void EigenDenoiser::update() {
 void EigenDenoiser::update_row(const Tile& row) {
   const Planes<3>* correction =
       correction_.is_open(row.index) ? &correction_.correction() : nullptr;
-  update_tile({coefficients_, learning_, prediction_, correction, light_, samples_, old_age_,
-               new_age_, memory_.active(), newborn_},
+  update_tile({coefficients_, learning_, residual_, correction, samples_, old_age_, new_age_,
+               memory_.active(), newborn_},
               row, {bases_, output_});
   estimate_variance({frame_.surface.id, new_age_, variance_, options_.young}, row,
                     {output_variance_, young_});

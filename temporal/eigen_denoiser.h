@@ -77,6 +77,7 @@ class EigenDenoiser final : public Denoiser {
   void warp_row(const Tile& row);
   [[nodiscard]] bool resample(FrameSource& source, std::int64_t planned);
   void project(bool resampled);
+  [[nodiscard]] CorrectionInputs correction_inputs() const;
   void predict(bool resampled);
   void report_rank();
   [[nodiscard]] float longest_age(int tile) const;
@@ -117,8 +118,11 @@ class EigenDenoiser final : public Denoiser {
   bool has_edges_ = false;  // in edge_
   std::vector<TileCount> counts_;
   Plane<std::uint8_t> extra_, edge_, young_;
-  Planes<3> light_, prediction_, guided_light_, output_;
-  Plane<float> samples_, residual_, confirmed_, old_age_, new_age_, output_variance_;
+  // This frame's light, resampling included, until predict() takes from it what history expects.
+  Planes<3> residual_;
+  Plane<float> innovation_, expected_;  // luminance of the residual, and of the prediction
+  Planes<3> guided_light_, output_;
+  Plane<float> samples_, old_age_, new_age_, output_variance_;
 };
 
 }  // namespace eigenlight

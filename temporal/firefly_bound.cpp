@@ -10,11 +10,8 @@
 namespace eigenlight {
 namespace {
 
-void scale_towards(const Planes<3>& center, float factor, int x, int y, Planes<3>& light) {
-  for (std::size_t c = 0; c < 3; ++c) {
-    const float from = center[c](x, y);
-    light[c](x, y) = from + factor * (light[c](x, y) - from);
-  }
+void scale(float factor, int x, int y, Planes<3>& planes) {
+  for (auto& plane : planes) plane(x, y) *= factor;
 }
 
 }  // namespace
@@ -35,10 +32,10 @@ FireflyBound::FireflyBound(Extent extent, const FireflyOptions& options)
   options.validate();
 }
 
-// Of the residual of a confirmed pixel.
+// Of the innovation of a confirmed pixel.
 float FireflyBound::deviation(const FireflyInputs& in, int x, int y) const {
   const float noise = in.variance(x, y) * (1.0f / in.samples(x, y) + 1.0f / in.age(x, y));
-  const float expected = 0.1f * luminance(in.prediction, x, y);
+  const float expected = 0.1f * in.expected(x, y);
   return std::sqrt(noise + expected * expected);
 }
 
@@ -81,18 +78,19 @@ int FireflyBound::bound_block(const FireflyInputs& in, const Tile& tile,
   int bounded = 0;
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0; x < tile.x1; ++x) {
-      if (out.confirmed(x, y) > 0.0f) {
-        const float size = std::abs(out.residual(x, y));
+      float& innovation = out.innovation(x, y);
+      if (!std::isnan(innovation)) {
+        const float size = std::abs(innovation);
         if (!around.is_steady || size == 0.0f) continue;
         const float sigma = deviation(in, x, y);
         if (size <= options_.deviations * sigma) continue;
-        scale_towards(in.prediction, step(in, x, y) * sigma / size, x, y, out.light);
-        out.residual(x, y) = out.confirmed(x, y) = 0.0f;
+        scale(step(in, x, y) * sigma / size, x, y, out.residual);
+        innovation = std::numeric_limits<float>::quiet_NaN();
         ++bounded;
-      } else if (in.samples(x, y) > 0.0f) {
-        const float size = std::abs(luminance(out.light, x, y));
+      } else if (in.samples(x, y) > 0.0f && in.age(x, y) == 0.0f) {
+        const float size = std::abs(luminance(out.residual, x, y));
         if (size <= around.brightness) continue;
-        for (auto& plane : out.light) plane(x, y) *= around.brightness / size;
+        scale(around.brightness / size, x, y, out.residual);
         ++bounded;
       }
     }
@@ -111,12 +109,15 @@ void FireflyBound::count(const FireflyInputs& in, const FireflyOutputs& out, con
   }
 }
 
-std::int64_t FireflyBound::bound(const FireflyInputs& in, const FireflyOutputs& out) {
+std::int64_t FireflyBound::bound(const FireflyInputs& in, const FireflyOutputs& out,
+                                 const std::function<void(const Tile&)>& changed) {
   const int columns = grid_.columns();
   parallel_for(grid_.rows(), [&](int row) {
     int bounded = 0;
     for (int i = row * columns; i < (row + 1) * columns; ++i) {
-      bounded += bound_block(in, grid_.tile(i), out);
+      const int here = bound_block(in, grid_.tile(i), out);
+      if (here > 0) changed(grid_.tile(i));
+      bounded += here;
     }
     bounded_[static_cast<std::size_t>(row)] = bounded;
   });

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "frame/frame.h"
@@ -25,7 +26,7 @@ struct FireflyOptions {
 };
 
 struct FireflyInputs {
-  const Planes<3>& prediction;   ///< what history expects; read where `confirmed` is 1
+  const Plane<float>& expected;  ///< luminance of the prediction; 0 without history
   const Plane<float>& age;       ///< n, of the history
   const Plane<float>& samples;   ///< s, this frame's samples over its regular number; 0: not usable
   const Plane<float>& variance;  ///< v, of one frame's luminance
@@ -42,9 +43,8 @@ struct FireflyBlock {
 
 /// What the bound changes.
 struct FireflyOutputs {
-  Planes<3>& light;
-  Plane<float>& residual;   ///< luminance of light - prediction
-  Plane<float>& confirmed;  ///< 1 where there is history and the light is usable, else 0
+  Planes<3>& residual;       ///< light - prediction: the light itself where there is no history
+  Plane<float>& innovation;  ///< luminance of the residual; NaN: not confirmed
 };
 
 /// Counts the pixels of a block whose left edge is a multiple of 8.
@@ -52,14 +52,13 @@ struct FireflyOutputs {
                                            const FireflyOutputs& out, const Tile& block);
 
 /// Bounded influence (Huber 1964). A residual r of luminance, with
-///   sigma^2 = v (1/s + 1/n) + (0.1 luminance(prediction))^2,
+///   sigma^2 = v (1/s + 1/n) + (0.1 expected)^2,
 /// is an outlier beyond `deviations` sigma. Where no more than `share` of the confirmed pixels in
 /// the 3 x 3 blocks of 8 x 8 pixels around are outliers, and no more than twice as many of those in
 /// the pixel's own block (an edge of light that moves has them side by side, fireflies have not),
 ///   - light is scaled back to min((n + s) / (s sqrt(n)), `deviations`) sigma from the prediction:
 ///     the mean of n + s samples moves by one of its own deviations, sigma / sqrt(n), at most;
-///   - the pixel is no longer confirmed, and its residual 0: it is no witness of what the light
-///     around does.
+///   - the pixel is no longer confirmed: it is no witness of what the light around does.
 /// Where more are, the light itself has changed and nothing is done. A new pixel may be `times` as
 /// bright as (mean sqrt(luminance))^2 over the usable pixels of those blocks, which a few fireflies
 /// hardly move. Light that is bright in every frame is so learned step by step, light that was
@@ -72,8 +71,10 @@ class FireflyBound {
   /// Counts the pixels of `area`, whose edges are multiples of 8 or those of the image, and changes
   /// nothing. To be called for all of the image, in any order and on any thread, before bound().
   void count(const FireflyInputs& in, const FireflyOutputs& out, const Tile& area);
-  /// Returns how many pixels it bounded.
-  std::int64_t bound(const FireflyInputs& in, const FireflyOutputs& out);
+  /// Returns how many pixels it bounded. Calls changed(block), on any thread, after those of a
+  /// block were; of one row of blocks from left to right.
+  std::int64_t bound(const FireflyInputs& in, const FireflyOutputs& out,
+                     const std::function<void(const Tile&)>& changed);
   /// What a new pixel of each block of 8 x 8 may be as bright as; infinite in blocks that no new
   /// pixel is near.
   [[nodiscard]] const Plane<float>& brightness() const { return brightness_; }

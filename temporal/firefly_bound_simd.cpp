@@ -21,13 +21,12 @@ V Luminance(V r, V g, V b) {
                     hn::MulAdd(hn::Set(d, 0.7152f), g, hn::Mul(hn::Set(d, 0.0722f), b)));
 }
 
-// Squared luminance that the residual of a confirmed pixel is expected to have.
-V Expected(V used, V variance, V samples, V age, V prediction) {
+// Squared innovation that a confirmed pixel is expected to have.
+V Expected(hn::Mask<D> confirmed, V variance, V samples, V age, V expected) {
   const D d;
   const V one = hn::Set(d, 1.0f);
-  const auto mask = hn::Gt(used, hn::Zero(d));
-  const V s = hn::IfThenElse(mask, samples, one), n = hn::IfThenElse(mask, age, one);
-  const V light = hn::Mul(hn::Set(d, 0.1f), prediction);
+  const V s = hn::IfThenElse(confirmed, samples, one), n = hn::IfThenElse(confirmed, age, one);
+  const V light = hn::Mul(hn::Set(d, 0.1f), expected);
   return hn::MulAdd(light, light, hn::Mul(variance, hn::Add(hn::Div(one, s), hn::Div(one, n))));
 }
 
@@ -41,17 +40,13 @@ FireflyBlock CountFireflies(const FireflyInputs& in, float deviations, const Fir
     for (int x = block.x0; x < block.x1; x += lanes) {
       const auto load = [&](const Plane<float>& plane) { return hn::LoadU(d, plane.row(y) + x); };
       const auto inside = hn::FirstN(d, static_cast<std::size_t>(block.x1 - x));
-      const V known = hn::IfThenElseZero(inside, load(out.confirmed));
+      const V r = load(out.innovation), prediction = load(in.expected);
       const V samples = hn::IfThenElseZero(inside, load(in.samples));
-      const auto confirmed = hn::Gt(known, zero), usable = hn::Gt(samples, zero);
-      const V prediction =
-          Luminance(load(in.prediction[0]), load(in.prediction[1]), load(in.prediction[2]));
-      const V expected = Expected(known, load(in.variance), samples, load(in.age), prediction);
-      const V r = load(out.residual);
+      const auto confirmed = hn::AndNot(hn::IsNaN(r), inside), usable = hn::Gt(samples, zero);
+      const V expected = Expected(confirmed, load(in.variance), samples, load(in.age), prediction);
       const auto outlier = hn::And(confirmed, hn::Gt(hn::Mul(r, r), hn::Mul(square, expected)));
-      const V shown =
-          hn::Abs(Luminance(load(out.light[0]), load(out.light[1]), load(out.light[2])));
-      const V root = hn::Sqrt(hn::IfThenElseZero(usable, shown));
+      const V off = Luminance(load(out.residual[0]), load(out.residual[1]), load(out.residual[2]));
+      const V root = hn::Sqrt(hn::IfThenElseZero(usable, hn::Abs(hn::Add(prediction, off))));
       counts.confirmed += static_cast<int>(hn::CountTrue(d, confirmed));
       counts.outliers += static_cast<int>(hn::CountTrue(d, outlier));
       counts.usable += static_cast<int>(hn::CountTrue(d, usable));

@@ -17,10 +17,9 @@ struct InnovationOptions {
 };
 
 struct InnovationInputs {
-  const Plane<float>& residual;   ///< luminance of u - prediction
-  const Plane<float>& confirmed;  ///< 1 where the residual means something, else 0
-  const Plane<float>& age;        ///< of the history
-  const Plane<float>& samples;    ///< this frame's samples over its regular number; 0: not usable
+  const Plane<float>& innovation;  ///< luminance of u - prediction; NaN: not confirmed
+  const Plane<float>& age;         ///< of the history
+  const Plane<float>& samples;     ///< this frame's samples over its regular number; 0: not usable
 };
 
 struct InnovationOutputs {
@@ -28,7 +27,7 @@ struct InnovationOutputs {
   Plane<float>& variance;  ///< in: one frame's variance so far (warped); out: with this frame
 };
 
-/// Over the window of 9 x 9 pixels, with N confirmed residuals e, mean mu and variance v:
+/// Over the window of 9 x 9 pixels, with N confirmed innovations e, mean mu and variance v:
 ///   t = mu^2 / (v / N * (1 + 1/n)),   b^2 = mu^2 max(0, 1 - threshold / t)
 /// is the squared bias that noise does not explain. The history of n frames is off by v/n + b^2,
 /// this frame's mean over s times the regular samples by v/s, so the Kalman gain that balances them

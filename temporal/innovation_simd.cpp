@@ -54,18 +54,18 @@ void SumRow(const InnovationInputs& in, const Tile& tile, int y, Sums& sums) {
   const int lanes = static_cast<int>(hn::Lanes(d)), count = tile.x1 - tile.x0;
   alignas(64) float confirmed[kWidth], value[kWidth], square[kWidth];
   const int first = std::max(tile.x0 - kRadius, 0);
-  const int last = std::min(tile.x1 + kRadius, in.residual.width());
+  const int last = std::min(tile.x1 + kRadius, in.innovation.width());
   const int shift = first - (tile.x0 - kRadius), end = shift + last - first;
   // Nothing lies to the left and to the right of the image.
   for (int i = 0; i < kRadius; ++i) confirmed[i] = value[i] = square[i] = 0.0f;
-  const float* e = in.residual.at(first, y);
-  const float* used = in.confirmed.at(first, y);
+  const float* innovation = in.innovation.at(first, y);
   const int seen = last - first;
   const auto take = [&](auto tag, int i) {
-    prefetch_below(in.residual, first + i, y);
-    prefetch_below(in.confirmed, first + i, y);
-    const auto v = hn::LoadU(tag, e + i);
-    hn::StoreU(hn::LoadU(tag, used + i), tag, confirmed + shift + i);
+    prefetch_below(in.innovation, first + i, y);
+    const auto e = hn::LoadU(tag, innovation + i);
+    const auto missing = hn::IsNaN(e);
+    const auto v = hn::IfThenZeroElse(missing, e);
+    hn::StoreU(hn::IfThenZeroElse(missing, hn::Set(tag, 1.0f)), tag, confirmed + shift + i);
     hn::StoreU(v, tag, value + shift + i);
     hn::StoreU(hn::Mul(v, v), tag, square + shift + i);
   };
@@ -116,7 +116,7 @@ void FinishRow(const InnovationInputs& in, const InnovationOptions& options, con
                const Sums& window, const InnovationOutputs& out) {
   const F d;
   const int lanes = static_cast<int>(hn::Lanes(d));
-  const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f), two = hn::Set(d, 2.0f);
+  const VF one = hn::Set(d, 1.0f), two = hn::Set(d, 2.0f);
   const VF longest = hn::Set(d, options.max_age), shortest_step = hn::Set(d, 1.0f / 16.0f);
   for (int i = 0; i < row.x1 - row.x0; i += lanes) {
     const auto load = [&](const Plane<float>& plane) {
@@ -124,7 +124,7 @@ void FinishRow(const InnovationInputs& in, const InnovationOptions& options, con
       return hn::LoadU(d, plane.row(row.y0) + row.x0 + i);
     };
     const VF age = load(in.age), samples = load(in.samples), count = hn::Load(d, window.count + i);
-    const auto confirmed = hn::Gt(load(in.confirmed), zero), alone = hn::Lt(count, two);
+    const auto confirmed = hn::Not(hn::IsNaN(load(in.innovation))), alone = hn::Lt(count, two);
     // Stand-ins keep the arithmetic of pixels finite whose result is not used.
     const VF n = hn::IfThenElse(confirmed, age, one), s = hn::IfThenElse(confirmed, samples, one);
     const Found found =
@@ -170,7 +170,7 @@ void FilterPart(const InnovationInputs& in, const InnovationOptions& options, co
                 const InnovationOutputs& out) {
   // A ring of row sums: each row of the window is summed once.
   Sums ring[kWindow];
-  const int height = in.residual.height();
+  const int height = in.innovation.height();
   const auto slot = [](int y) { return y % kWindow; };
   for (int y = std::max(tile.y0 - kRadius, 0); y < std::min(tile.y0 + kRadius, height); ++y) {
     SumRow(in, tile, y, ring[slot(y)]);

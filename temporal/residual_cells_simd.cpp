@@ -19,7 +19,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 // Squared standard deviations of a block's mean that count as chance: 0.3 % of normal noise, some 2
 // % of path-traced noise with its heavy tail; and the pixels a block must have to be asked at all.
 constexpr double kBlockChance = 9.0;
-constexpr int kBlock = 8, kBlockPixels = 16;
+constexpr int kBlockPixels = 16;
 
 // Up to eight lanes: a row of a block, or as many cells of which a row of pixels has both columns
 // inside its padding.
@@ -39,24 +39,23 @@ VB ResidualVariance(MB used, VB variance, VB samples, VB age) {
 struct ColumnSums {
   static constexpr int kColumns = 256;
 
-  alignas(64) float residual[kColumns], noise[kColumns], count[kColumns];
+  alignas(64) float innovation[kColumns], noise[kColumns], count[kColumns];
 };
 
 // Adds a row of at most kColumns pixels.
-void AddRow(const CorrectionInputs& in, const Plane<float>& residual, const Tile& row,
-            ColumnSums& sums) {
+void AddRow(const CorrectionInputs& in, const Tile& row, ColumnSums& sums) {
   const B d;
   for (int x = row.x0; x < row.x1; x += static_cast<int>(hn::Lanes(d))) {
     const auto load = [&](const Plane<float>& plane) {
-      prefetch_below(plane, x, row.y0);
       return hn::LoadU(d, plane.row(row.y0) + x);
     };
     const auto inside = hn::FirstN(d, static_cast<std::size_t>(row.x1 - x));
-    const MB used = hn::And(inside, hn::Gt(load(in.confirmed), hn::Zero(d)));
+    const VB innovation = load(in.innovation);
+    const MB used = hn::AndNot(hn::IsNaN(innovation), inside);
     const auto add = [&](VB value, float* to) {
       hn::Store(hn::Add(hn::Load(d, to + x - row.x0), value), d, to + x - row.x0);
     };
-    add(hn::IfThenElseZero(used, load(residual)), sums.residual);
+    add(hn::IfThenElseZero(used, innovation), sums.innovation);
     add(ResidualVariance(used, load(in.variance), load(in.samples), load(in.age)), sums.noise);
     add(hn::IfThenElseZero(used, hn::Set(d, 1.0f)), sums.count);
   }
@@ -66,35 +65,30 @@ void AddRow(const CorrectionInputs& in, const Plane<float>& residual, const Tile
 double SumBlock(const float* columns) {
   const B d;
   double sum = 0.0;
-  for (int i = 0; i < kBlock; i += static_cast<int>(hn::Lanes(d))) {
+  for (int i = 0; i < kResidualBlock; i += static_cast<int>(hn::Lanes(d))) {
     sum += static_cast<double>(hn::GetLane(hn::SumOfLanes(d, hn::Load(d, columns + i))));
   }
   return sum;
 }
 
-void CountBlock(const ColumnSums& sums, int column, BlockCounts& counts) {
-  const double count = SumBlock(sums.count + column);
-  counts.confirmed += static_cast<std::int64_t>(count);
-  if (count < kBlockPixels) return;
-  const double residual = SumBlock(sums.residual + column);
-  ++counts.all;
-  counts.significant += residual * residual > kBlockChance * SumBlock(sums.noise + column) ? 1 : 0;
+ResidualBlock TestBlock(const ColumnSums& sums, int column) {
+  ResidualBlock block;
+  block.confirmed = static_cast<int>(SumBlock(sums.count + column));
+  block.is_asked = block.confirmed >= kBlockPixels;
+  if (!block.is_asked) return block;
+  const double sum = SumBlock(sums.innovation + column);
+  block.is_significant = sum * sum > kBlockChance * SumBlock(sums.noise + column);
+  return block;
 }
 
 // Row by row: those of a block are too short for the next one to be foreseen.
-void TestBlocks(const CorrectionInputs& in, const Plane<float>& residual, const Tile& area,
-                int tile_width, std::span<BlockCounts> counts) {
-  for (int y0 = area.y0; y0 < area.y1; y0 += kBlock) {
-    for (int x0 = area.x0; x0 < area.x1; x0 += ColumnSums::kColumns) {
-      const int x1 = std::min(x0 + ColumnSums::kColumns, area.x1);
-      ColumnSums sums{};
-      for (int y = y0; y < std::min(y0 + kBlock, area.y1); ++y) {
-        AddRow(in, residual, {x0, y, x1, y + 1, 0}, sums);
-      }
-      for (int x = x0; x < x1; x += kBlock) {
-        CountBlock(sums, x - x0, counts[static_cast<std::size_t>((x - area.x0) / tile_width)]);
-      }
-    }
+void TestBlocks(const CorrectionInputs& in, const Tile& area, std::span<ResidualBlock> blocks) {
+  std::size_t next = 0;
+  for (int x0 = area.x0; x0 < area.x1; x0 += ColumnSums::kColumns) {
+    const int x1 = std::min(x0 + ColumnSums::kColumns, area.x1);
+    ColumnSums sums{};
+    for (int y = area.y0; y < area.y1; ++y) AddRow(in, {x0, y, x1, y + 1, 0}, sums);
+    for (int x = x0; x < x1; x += kResidualBlock) blocks[next++] = TestBlock(sums, x - x0);
   }
 }
 
@@ -117,10 +111,19 @@ Quad<hn::Vec<D>> LoadQuad(D d, const Plane<T>& plane, const Place& place) {
   Quad<hn::Vec<D>> quad;
   for (std::size_t row = 0; row < 2; ++row) {
     const auto* from = reinterpret_cast<const hn::TFromD<D>*>(plane.row(place.rows[row]));
-    if (place.inside_y) prefetch_below(plane, place.column, place.rows[row] + 1);
     hn::LoadInterleaved2(d, from + place.column, quad.at[2 * row], quad.at[2 * row + 1]);
   }
   return quad;
+}
+
+// Ask for what the next row of cells will read of its surfaces, which nothing before it has read.
+void PrefetchSurfaces(const GBuffer& surface, const Place& place) {
+  if (!place.inside_y) return;
+  for (const int row : {place.rows[0] + 1, place.rows[1] + 1}) {
+    for (const auto& plane : surface.normal) prefetch_below(plane, place.column, row);
+    prefetch_below(surface.id, place.column, row);
+  }
+  prefetch_below(surface.depth, place.column, place.rows[0] + 1);
 }
 
 // Which of the four pixels are confirmed and show the surface of the first.
@@ -128,8 +131,9 @@ Quad<MB> Members(const CorrectionInputs& in, const Place& place, const TapOption
                  ResidualCells& cells, int x, int y) {
   const B d;
   const hn::RebindToUnsigned<B> du;
+  PrefetchSurfaces(in.guides.surface, place);
   const auto id = LoadQuad(du, in.guides.surface.id, place);
-  const auto confirmed = LoadQuad(d, in.confirmed, place);
+  const auto innovation = LoadQuad(d, in.innovation, place);
   VB cosine[4] = {hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d)};
   for (std::size_t c = 0; c < 3; ++c) {
     const auto normal = LoadQuad(d, in.guides.surface.normal[c], place);
@@ -139,8 +143,8 @@ Quad<MB> Members(const CorrectionInputs& in, const Place& place, const TapOption
   Quad<MB> member;
   auto any = hn::RebindMask(d, hn::Ne(id.at[0], id.at[0]));
   for (int q = 0; q < 4; ++q) {
-    member.at[q] = hn::And(hn::RebindMask(d, hn::Eq(id.at[q], id.at[0])),
-                           hn::Gt(confirmed.at[q], hn::Zero(d)));
+    member.at[q] =
+        hn::AndNot(hn::IsNaN(innovation.at[q]), hn::RebindMask(d, hn::Eq(id.at[q], id.at[0])));
     if (q > 0) {
       member.at[q] = hn::And(member.at[q], hn::Ge(cosine[q], hn::Set(d, taps.normal_cosine)));
     }
@@ -153,8 +157,8 @@ Quad<MB> Members(const CorrectionInputs& in, const Place& place, const TapOption
   return member;
 }
 
-void LoadCellVector(const CorrectionInputs& in, const Planes<3>& prediction, const Place& place,
-                    ResidualCells& cells, int x, int y) {
+void LoadCellVector(const CorrectionInputs& in, const Place& place, ResidualCells& cells, int x,
+                    int y) {
   const B d;
   const Quad<MB> member = Members(in, place, {}, cells, x, y);
   VB count = hn::Zero(d), noise = hn::Zero(d);
@@ -168,26 +172,24 @@ void LoadCellVector(const CorrectionInputs& in, const Planes<3>& prediction, con
   }
   const VB share = hn::Div(hn::Set(d, 1.0f), hn::Max(count, hn::Set(d, 1.0f)));
   for (std::size_t c = 0; c < 3; ++c) {
-    const auto light = LoadQuad(d, in.light[c], place);
-    const auto expected = LoadQuad(d, prediction[c], place);
+    const auto residual = LoadQuad(d, in.residual[c], place);
     VB sum = hn::Zero(d);
     for (int q = 0; q < 4; ++q) {
-      const VB residual = hn::Sub(light.at[q], expected.at[q]);
-      sum = hn::Add(sum, hn::IfThenElseZero(member.at[q], residual));
+      sum = hn::Add(sum, hn::IfThenElseZero(member.at[q], residual.at[q]));
     }
     hn::StoreU(hn::Mul(sum, share), d, cells.mean[c].row(y) + x);
   }
   hn::StoreU(hn::Mul(noise, hn::Mul(share, share)), d, cells.noise.row(y) + x);
   hn::StoreU(count, d, cells.count.row(y) + x);
   // The filter knows by its depth that a cell has nothing to give.
-  const VB depth = LoadQuad(d, in.guides.surface.depth, place).at[0];
+  VB depth, beside;
+  hn::LoadInterleaved2(d, in.guides.surface.depth.row(place.rows[0]) + place.column, depth, beside);
   const VB infinite = hn::Set(d, std::numeric_limits<float>::infinity());
   hn::StoreU(hn::IfThenElse(hn::Gt(count, hn::Zero(d)), depth, infinite), d,
              cells.guides.surface.depth.row(y) + x);
 }
 
-void LoadCells(const CorrectionInputs& in, const Planes<3>& prediction, const Tile& tile,
-               ResidualCells& cells) {
+void LoadCells(const CorrectionInputs& in, const Tile& tile, ResidualCells& cells) {
   const B d;
   const int lanes = static_cast<int>(hn::Lanes(d));
   const Extent pixels = in.guides.extent();
@@ -196,7 +198,7 @@ void LoadCells(const CorrectionInputs& in, const Planes<3>& prediction, const Ti
     for (int x = tile.x0; x < tile.x1; x += lanes) {
       // Of the cells from x on, those with a right column in the image.
       const int whole = std::max(pixels.width / 2 - x, 0);
-      LoadCellVector(in, prediction,
+      LoadCellVector(in,
                      {2 * x,
                       {2 * y, inside_y ? 2 * y + 1 : 2 * y},
                       hn::FirstN(d, static_cast<std::size_t>(whole)),
@@ -216,14 +218,15 @@ namespace eigenlight {
 HWY_EXPORT(TestBlocks);
 HWY_EXPORT(LoadCells);
 
-void test_blocks(const CorrectionInputs& in, const Plane<float>& residual, const Tile& area,
-                 int tile_width, std::span<BlockCounts> counts) {
-  HWY_DYNAMIC_DISPATCH(TestBlocks)(in, residual, area, tile_width, counts);
+void test_blocks(const CorrectionInputs& in, const Tile& area, std::span<ResidualBlock> blocks) {
+  EL_DCHECK(area.y1 - area.y0 <= kResidualBlock);
+  EL_DCHECK(area.x0 % kResidualBlock == 0 && area.y0 % kResidualBlock == 0);
+  HWY_DYNAMIC_DISPATCH(TestBlocks)(in, area, blocks);
 }
 
-void load_cells(const CorrectionInputs& in, const Planes<3>& prediction, const Tile& tile,
-                ResidualCells& cells) {
-  HWY_DYNAMIC_DISPATCH(LoadCells)(in, prediction, tile, cells);
+void load_cells(const CorrectionInputs& in, const Tile& tile, ResidualCells& cells) {
+  EL_DCHECK(tile.x0 % kCellStep == 0);
+  HWY_DYNAMIC_DISPATCH(LoadCells)(in, tile, cells);
 }
 
 ResidualCells::ResidualCells(Extent pixels)

@@ -138,60 +138,70 @@ void SumRow(const FreshInputs& in, const Tile& tile, int y, Sums& sums) {
   }
 }
 
-// The first and last rows of the tile with new pixels; {0, -1} without any.
-std::array<int, 2> FreshRows(const Frame& frame, const Plane<float>& age, const Tile& tile) {
-  std::array<int, 2> rows{0, -1};
+// The new pixels of a tile lie in this part of it; empty without any.
+Tile FreshPart(const Frame& frame, const Plane<float>& age, const Tile& tile) {
+  Tile part{tile.x1, tile.y1, tile.x0, tile.y0, tile.index};
   for (int y = tile.y0; y < tile.y1; ++y) {
-    const float* n = age.at(tile.x0, y);
-    const std::uint32_t* id = frame.surface.id.at(tile.x0, y);
+    const float* n = age.row(y);
+    const std::uint32_t* id = frame.surface.id.row(y);
+    const auto is_fresh = [&](int x) { return (id[x] != 0) & (n[x] == 0.0f); };
     int fresh = 0;
-    for (int i = 0; i < tile.x1 - tile.x0; ++i) {
-      fresh += static_cast<int>((id[i] != 0) & (n[i] == 0.0f));
-    }
+    for (int x = tile.x0; x < tile.x1; ++x) fresh += static_cast<int>(is_fresh(x));
     if (fresh == 0) continue;
-    if (rows[1] < 0) rows[0] = y;
-    rows[1] = y;
+    int left = tile.x0, right = tile.x1;
+    while (!is_fresh(left)) ++left;
+    while (!is_fresh(right - 1)) --right;
+    part.x0 = std::min(part.x0, left);
+    part.x1 = std::max(part.x1, right);
+    part.y0 = std::min(part.y0, y);
+    part.y1 = y + 1;
   }
-  return rows;
+  return part;
+}
+
+// Sets the new pixels of a row from the sums of their windows.
+void SetFresh(const FreshInputs& in, const Tile& part, int y, const Sums& window,
+              Plane<float>& variance) {
+  const float* n = in.age.at(part.x0, y);
+  const std::uint32_t* id = in.frame.surface.id.at(part.x0, y);
+  float* out = variance.at(part.x0, y);
+  for (int i = 0; i < part.x1 - part.x0; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const double count = window.count[at] > 1.0 ? window.count[at] : 1.0;
+    const double mean = window.value[at] / count;
+    const double scatter = window.square[at] / count - mean * mean;
+    const bool fresh = (id[i] != 0) & (n[i] == 0.0f);
+    const bool spread = (window.count[at] > 1.0) & (scatter > 0.0);
+    out[i] = fresh ? (spread ? static_cast<float>(scatter) : 0.0f) : out[i];
+  }
 }
 
 void FreshVariance(const FreshInputs& in, const Tile& tile, Plane<float>& variance) {
-  const auto [top, bottom] = FreshRows(in.frame, in.age, tile);
-  if (bottom < 0) return;
+  const Tile part = FreshPart(in.frame, in.age, tile);
+  if (part.x0 >= part.x1) return;
   // A ring of row sums: each row of the window is summed once.
-  std::array<Sums, kWindow> ring{};
+  std::array<Sums, kWindow> ring;
   const int height = in.samples.height();
   const auto slot = [](int y) { return static_cast<std::size_t>((y + kWindow) % kWindow); };
   const auto fill = [&](int y) {
     if (y < 0 || y >= height) {
       ring[slot(y)] = {};
     } else {
-      SumRow(in, tile, y, ring[slot(y)]);
+      SumRow(in, part, y, ring[slot(y)]);
     }
   };
-  for (int y = top - kRadius; y < top + kRadius; ++y) fill(y);
-  for (int y = top; y <= bottom; ++y) {
+  for (int y = part.y0 - kRadius; y < part.y0 + kRadius; ++y) fill(y);
+  for (int y = part.y0; y < part.y1; ++y) {
     fill(y + kRadius);
     Sums window;
     for (const Sums& row : ring) {
-      for (std::size_t i = 0; i < kSegment; ++i) {
+      for (std::size_t i = 0; i < static_cast<std::size_t>(part.x1 - part.x0); ++i) {
         window.count[i] += row.count[i];
         window.value[i] += row.value[i];
         window.square[i] += row.square[i];
       }
     }
-    const float* n = in.age.at(tile.x0, y);
-    const std::uint32_t* id = in.frame.surface.id.at(tile.x0, y);
-    float* out = variance.at(tile.x0, y);
-    for (int i = 0; i < tile.x1 - tile.x0; ++i) {
-      const auto at = static_cast<std::size_t>(i);
-      const double count = window.count[at] > 1.0 ? window.count[at] : 1.0;
-      const double mean = window.value[at] / count;
-      const double scatter = window.square[at] / count - mean * mean;
-      const bool fresh = (id[i] != 0) & (n[i] == 0.0f);
-      const bool spread = (window.count[at] > 1.0) & (scatter > 0.0);
-      out[i] = fresh ? (spread ? static_cast<float>(scatter) : 0.0f) : out[i];
-    }
+    SetFresh(in, part, y, window, variance);
   }
 }
 

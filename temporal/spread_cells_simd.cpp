@@ -164,11 +164,11 @@ HWY_INLINE void TakeAround(const View& view, const TapOptions& taps, const Cells
   TakeCells<Column::kOther>(view, cosine, at, other, 1.0f / 16, taker);
 }
 
-void GiveTaker(const Taker& taker, const Plane<float>& confirmed, int x, int y,
-               const SpreadOutputs& out) {
+void GiveTaker(const Taker& taker, int x, int y, const SpreadOutputs& out) {
   const F d;
-  const auto takes = hn::And(hn::Gt(taker.weight, hn::Zero(d)),
-                             hn::Gt(hn::LoadU(d, confirmed.row(y) + x), hn::Zero(d)));
+  float* const innovation = out.innovation.row(y) + x;
+  const VF before = hn::LoadU(d, innovation);
+  const auto takes = hn::AndNot(hn::IsNaN(before), hn::Gt(taker.weight, hn::Zero(d)));
   const VF one = hn::Set(d, 1.0f);
   const VF scale =
       hn::IfThenElseZero(takes, hn::Div(one, hn::IfThenElse(takes, taker.weight, one)));
@@ -178,16 +178,14 @@ void GiveTaker(const Taker& taker, const Plane<float>& confirmed, int x, int y,
     given[c] = hn::Mul(taker.sum[c], scale);
     hn::StoreU(given[c], d, out.correction[c].row(y) + x);
   }
-  prefetch_below(confirmed, x, y);
-  prefetch_below(out.residual, x, y);
+  prefetch_below(out.innovation, x, y);
   const VF luminance =
       hn::MulAdd(hn::Set(d, 0.2126f), given[0],
                  hn::MulAdd(hn::Set(d, 0.7152f), given[1], hn::Mul(hn::Set(d, 0.0722f), given[2])));
-  float* residual = out.residual.row(y) + x;
-  hn::StoreU(hn::Sub(hn::LoadU(d, residual), luminance), d, residual);
+  hn::StoreU(hn::Sub(before, luminance), d, innovation);
 }
 
-void SpreadCells(const ResidualCells& cells, const CorrectionInputs& in, const Tile& tile,
+void SpreadCells(const ResidualCells& cells, const Frame& guides, const Tile& tile,
                  const SpreadOutputs& out) {
   const int lanes = static_cast<int>(hn::Lanes(F()));
   const View view{cells, cells.guides.camera};
@@ -196,13 +194,13 @@ void SpreadCells(const ResidualCells& cells, const CorrectionInputs& in, const T
   for (int y = tile.y0; y < tile.y1; ++y) {
     const int own = y / 2, other = std::clamp(own + 2 * (y & 1) - 1, 0, extent.height - 1);
     for (int x = tile.x0; x < tile.x1; x += lanes) {
-      Taker taker = LoadTaker(view, in.guides, taps, x, y);
+      Taker taker = LoadTaker(view, guides, taps, x, y);
       if (InnerCells::fit(x, extent.width)) {
         TakeAround(view, taps, InnerCells(x), own, other, taker);
       } else {
         TakeAround(view, taps, ScatteredCells(x, extent.width), own, other, taker);
       }
-      GiveTaker(taker, in.confirmed, x, y, out);
+      GiveTaker(taker, x, y, out);
     }
   }
 }
@@ -216,9 +214,9 @@ namespace eigenlight {
 
 HWY_EXPORT(SpreadCells);
 
-void spread_cells(const ResidualCells& cells, const CorrectionInputs& in, const Tile& tile,
+void spread_cells(const ResidualCells& cells, const Frame& guides, const Tile& tile,
                   const SpreadOutputs& out) {
-  HWY_DYNAMIC_DISPATCH(SpreadCells)(cells, in, tile, out);
+  HWY_DYNAMIC_DISPATCH(SpreadCells)(cells, guides, tile, out);
 }
 
 }  // namespace eigenlight

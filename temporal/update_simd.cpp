@@ -100,8 +100,7 @@ void UpdateVector(const UpdateInputs& in, const Place& at, const Row& row,
     const VF correction = in.correction == nullptr
                               ? hn::Zero(F())
                               : hn::IfThenElseZero(step.known, Load((*in.correction)[c], at));
-    const VF residual =
-        hn::Sub(Load(in.light[c], at), hn::Add(Load(in.prediction[c], at), correction));
+    const VF residual = hn::Sub(Load(in.residual[c], at), correction);
     Store(UpdateBases(in, step, residual, correction, static_cast<int>(c), at, row, out.bases), at,
           out.estimate[c]);
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "temporal/innovation.h"
 
@@ -19,8 +20,8 @@ inline Innovation innovation(const InnovationInputs& in, const InnovationOptions
   const auto over_window = [&](const auto& visit) {
     for (int y = p.y - 4; y <= p.y + 4; ++y) {
       for (int x = p.x - 4; x <= p.x + 4; ++x) {
-        if (in.residual.extent().contains(x, y) && in.confirmed(x, y) > 0.0f) {
-          visit(static_cast<double>(in.residual(x, y)));
+        if (in.innovation.extent().contains(x, y) && !std::isnan(in.innovation(x, y))) {
+          visit(static_cast<double>(in.innovation(x, y)));
         }
       }
     }
@@ -31,7 +32,8 @@ inline Innovation innovation(const InnovationInputs& in, const InnovationOptions
   });
   const double n = in.age(p.x, p.y), s = in.samples(p.x, p.y);
   const double oldest = std::max(static_cast<double>(options.max_age), s);
-  if (!(in.confirmed(p.x, p.y) > 0.0f) || count == 1.0) return {std::min(n + s, oldest), variance};
+  if (std::isnan(in.innovation(p.x, p.y)) || count == 1.0)
+    return {std::min(n + s, oldest), variance};
   const double mu = sum / count;
   double v = 0.0;
   over_window([&](double e) { v += (e - mu) * (e - mu) / count; });

@@ -21,7 +21,7 @@ struct Cell {
   std::array<double, 3> mean{};
 };
 
-inline Cell cell(const CorrectionInputs& in, const Planes<3>& prediction, int cx, int cy) {
+inline Cell cell(const CorrectionInputs& in, int cx, int cy) {
   Cell out;
   const Extent extent = in.guides.extent();
   const std::uint32_t id = in.guides.surface.id(2 * cx, 2 * cy);
@@ -31,11 +31,11 @@ inline Cell cell(const CorrectionInputs& in, const Planes<3>& prediction, int cx
       const bool first = x == 2 * cx && y == 2 * cy;
       const bool same = first || glm::dot(normal, normal_at(in.guides, x, y)) >=
                                      static_cast<double>(TapOptions{}.normal_cosine);
-      if (!(in.confirmed(x, y) > 0.0f) || in.guides.surface.id(x, y) != id || !same) continue;
+      if (std::isnan(in.innovation(x, y)) || in.guides.surface.id(x, y) != id || !same) continue;
       out.count += 1.0;
       out.noise += in.variance(x, y) * (1.0 / in.samples(x, y) + 1.0 / in.age(x, y));
       for (std::size_t c = 0; c < 3; ++c) {
-        out.mean[c] += static_cast<double>(in.light[c](x, y)) - prediction[c](x, y);
+        out.mean[c] += static_cast<double>(in.residual[c](x, y));
       }
     }
   }
@@ -49,7 +49,7 @@ inline Cell cell(const CorrectionInputs& in, const Planes<3>& prediction, int cx
 /// What pixel (x, y) gets of the cells around.
 inline std::array<double, 3> spread(const ResidualCells& cells, const CorrectionInputs& in, int x,
                                     int y) {
-  if (!(in.confirmed(x, y) > 0.0f)) return {};
+  if (std::isnan(in.innovation(x, y))) return {};
   const Camera& camera = in.guides.camera;
   const glm::dvec3 normal = normal_at(in.guides, x, y);
   const glm::dvec3 view = glm::dmat3(camera.world_to_view) * normal;

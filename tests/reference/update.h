@@ -38,8 +38,7 @@ inline Updated update(const UpdateInputs& in, const BasisField& old, glm::ivec2 
     const double correction = known && in.correction != nullptr
                                   ? static_cast<double>((*in.correction)[channel](x, y))
                                   : 0.0;
-    const double r =
-        usable ? in.light[channel](x, y) - (in.prediction[channel](x, y) + correction) : 0.0;
+    const double r = usable ? in.residual[channel](x, y) - correction : 0.0;
     const double learned =
         (in.newborn == 0 ? correction / h : 0.0) + (usable ? r * s / (n + h * s) : 0.0);
     for (int k = 0; k < in.active; ++k) {

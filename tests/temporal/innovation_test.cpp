@@ -14,34 +14,30 @@
 namespace eigenlight {
 namespace {
 
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
 struct Scene {
   explicit Scene(Extent extent)
-      : residual(extent),
-        confirmed(extent),
-        age(extent),
-        samples(extent),
-        new_age(extent),
-        variance(extent) {
-    confirmed.fill(1.0f);
+      : innovation(extent), age(extent), samples(extent), new_age(extent), variance(extent) {
     age.fill(10.0f);
     samples.fill(1.0f);
   }
-  [[nodiscard]] InnovationInputs in() const { return {residual, confirmed, age, samples}; }
+  [[nodiscard]] InnovationInputs in() const { return {innovation, age, samples}; }
   // Noise of standard deviation 1 around `mean`.
   void set_noise(float mean) {
-    for (int y = 0; y < residual.height(); ++y) {
-      for (int x = 0; x < residual.width(); ++x) {
-        residual(x, y) = mean + PixelRandom(4, x, y).between(-1.732f, 1.732f);
+    for (int y = 0; y < innovation.height(); ++y) {
+      for (int x = 0; x < innovation.width(); ++x) {
+        innovation(x, y) = mean + PixelRandom(4, x, y).between(-1.732f, 1.732f);
       }
     }
   }
   void run(const InnovationOptions& options = {}) {
-    const TileGrid grid(residual.extent(), 32, 32);
+    const TileGrid grid(innovation.extent(), 32, 32);
     for (int i = 0; i < grid.count(); ++i) {
       innovation_tile(in(), options, grid.tile(i), {new_age, variance});
     }
   }
-  Plane<float> residual, confirmed, age, samples, new_age, variance;
+  Plane<float> innovation, age, samples, new_age, variance;
 };
 
 // All kinds of pixels: new, unconfirmed, resampled, biased on one side of the image.
@@ -51,13 +47,12 @@ Scene mixed(Extent extent) {
   for (int y = 0; y < extent.height; ++y) {
     for (int x = 0; x < extent.width; ++x) {
       PixelRandom random(6, x, y);
-      if (x > extent.width / 2) scene.residual(x, y) += 0.8f;
+      if (x > extent.width / 2) scene.innovation(x, y) += 0.8f;
       scene.age(x, y) = random.between(1.0f, 64.0f);
       scene.samples(x, y) = random.uniform() < 0.1f ? 4.0f : 1.0f;
       scene.variance(x, y) = random.between(0.1f, 2.0f);
       if (random.uniform() < 0.15f) {
-        scene.confirmed(x, y) = 0.0f;
-        scene.residual(x, y) = 0.0f;
+        scene.innovation(x, y) = kNan;
         scene.age(x, y) = random.uniform() < 0.5f ? 0.0f : scene.age(x, y);
         // Not usable, or bounded.
         if (scene.age(x, y) > 0.0f && random.uniform() < 0.5f) scene.samples(x, y) = 0.0f;
@@ -144,10 +139,10 @@ TEST(Innovation, NewPixelsStartAndUnusableOnesWait) {
   Scene scene({9, 9});
   scene.set_noise(0.0f);
   scene.age(4, 4) = 0.0f;
-  scene.confirmed(4, 4) = 0.0f;
+  scene.innovation(4, 4) = kNan;
   scene.samples(4, 4) = 7.0f;
   scene.age(2, 2) = 23.0f;
-  scene.confirmed(2, 2) = 0.0f;
+  scene.innovation(2, 2) = kNan;
   scene.samples(2, 2) = 0.0f;
   scene.variance(2, 2) = 0.5f;
   scene.run();
@@ -159,7 +154,7 @@ TEST(Innovation, NewPixelsStartAndUnusableOnesWait) {
 // One pixel alone has no local mean to test, and ages like any other.
 TEST(Innovation, ALonePixelAges) {
   Scene scene({1, 1});
-  scene.residual(0, 0) = 0.5f;
+  scene.innovation(0, 0) = 0.5f;
   scene.samples(0, 0) = 2.0f;
   scene.run();
   EXPECT_EQ(scene.new_age(0, 0), 12.0f);

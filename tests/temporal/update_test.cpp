@@ -18,9 +18,8 @@ struct Scene {
       : field(random_bases(extent, bases, 8)),
         coefficients(extent, bases),
         learning(extent, bases),
-        prediction(make_planes<3>(extent)),
+        residual(make_planes<3>(extent)),
         correction(make_planes<3>(extent)),
-        light(make_planes<3>(extent)),
         samples(extent),
         old_age(extent),
         new_age(extent),
@@ -45,10 +44,10 @@ struct Scene {
     new_age(x, y) = old_age(x, y) + samples(x, y);
     const bool known = old_age(x, y) > 0.0f;
     for (std::size_t c = 0; c < 3; ++c) {
-      prediction[c](x, y) = known ? random.between(0.0f, 2.0f) : 0.0f;
+      const float prediction = known ? random.between(0.0f, 2.0f) : 0.0f;
       correction[c](x, y) = known && usable ? random.between(-0.2f, 0.2f) : 0.0f;
-      light[c](x, y) =
-          usable ? random.between(0.0f, 2.0f) : std::numeric_limits<float>::quiet_NaN();
+      residual[c](x, y) = usable ? random.between(0.0f, 2.0f) - prediction
+                                 : std::numeric_limits<float>::quiet_NaN();
     }
     // Slots out of use hold nothing.
     for (int c = 0; c < 3; ++c) {
@@ -57,8 +56,8 @@ struct Scene {
   }
 
   [[nodiscard]] UpdateInputs in() const {
-    return {coefficients, learning, prediction, &correction, light,
-            samples,      old_age,  new_age,    active,      newborn};
+    return {coefficients, learning, residual, &correction, samples,
+            old_age,      new_age,  active,   newborn};
   }
   void run() {
     for (int i = 0; i < coefficients.grid().count(); ++i) {
@@ -68,7 +67,7 @@ struct Scene {
 
   BasisField field;
   CoefficientField coefficients, learning;
-  Planes<3> prediction, correction, light;
+  Planes<3> residual, correction;
   Plane<float> samples, old_age, new_age;
   int active, newborn = 0;
   Planes<3> estimate;
@@ -131,9 +130,8 @@ TEST(Update, OfSteadyLightIsTheMeanOfAllFrames) {
     scene.old_age.fill(static_cast<float>(n - 1));
     scene.new_age.fill(static_cast<float>(n));
     for (std::size_t c = 0; c < 3; ++c) {
-      scene.light[c].fill(u);
       scene.correction[c].fill(0.0f);
-      scene.prediction[c].fill(scene.field.value(2, 1, static_cast<int>(c), 0));
+      scene.residual[c].fill(u - scene.field.value(2, 1, static_cast<int>(c), 0));
     }
     scene.run();
     EXPECT_NEAR(scene.estimate[1](2, 1), sum / n, 1e-5) << n;
@@ -164,7 +162,7 @@ TEST(Update, NewPixelsExplainTheirOwnLight) {
       for (std::size_t c = 0; c < 3; ++c) {
         // Exactly where c and q belong together; interpolated ones may give up to h < 1 less.
         const double h = leverage(before, x, y);
-        const float wanted = usable ? before.light[c](x, y) : 0.0f;
+        const float wanted = usable ? before.residual[c](x, y) : 0.0f;
         EXPECT_NEAR(scene.estimate[c](x, y), wanted * std::min(h, 1.0), 1e-5);
       }
       EXPECT_EQ(scene.field.age(x, y), usable ? before.samples(x, y) : 0.0f);
