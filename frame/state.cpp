@@ -54,6 +54,12 @@ void StateReader::value(std::string_view name, bool& value) {
   value = byte == 1;
 }
 
+void StateReader::version(std::string_view name, std::int32_t wanted) {
+  std::int32_t found = 0;
+  value(name, found);
+  if (found != wanted) fail(name, fmt::format("version {}, expected {}", found, wanted));
+}
+
 void StateReader::check_same(std::string_view name, const std::int32_t (&found)[3],
                              const std::int32_t (&wanted)[3]) {
   if (std::equal(std::begin(found), std::end(found), std::begin(wanted))) return;

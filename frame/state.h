@@ -61,6 +61,8 @@ class StateReader {
     block(name, &value, sizeof(T));
   }
   void value(std::string_view name, bool& value);
+  /// A value that must be `wanted`.
+  void version(std::string_view name, std::int32_t wanted);
   /// A plane that has a shape is given values of that shape only; an empty one takes any.
   template <typename T>
   void plane(std::string_view name, Plane<T>& plane) {

@@ -19,6 +19,12 @@ namespace {
 // Changes when the saved bytes do.
 constexpr int kStateVersion = 4;
 
+void expect_bases(int found, int wanted) {
+  if (found == wanted) return;
+  throw std::runtime_error(
+      fmt::format("state of 'eigenlight': {} bases, expected {}", found, wanted));
+}
+
 // Longest age at edges, over that of the pixels around, where light changes.
 constexpr float kEdgeShare = 2.0f / 3.0f;
 
@@ -350,20 +356,14 @@ void EigenDenoiser::save(StateWriter& out) const {
 }
 
 void EigenDenoiser::load(StateReader& in) {
-  const auto expect = [](std::string_view name, int found, int wanted) {
-    if (found == wanted) return;
-    throw std::runtime_error(
-        fmt::format("state of 'eigenlight': {} {}, expected {}", name, found, wanted));
-  };
-  int version = 0, bases = 0;
-  in.value("eigenlight", version);
-  expect("version", version, kStateVersion);
+  in.version("eigenlight", kStateVersion);
   surfaces_.load(in);
   is_taken_ = true;
+  int bases = 0;
   in.value("bases", bases);
-  expect("bases", bases, memory_.bases());
+  expect_bases(bases, memory_.bases());
   in.value("bases in use", bases);
-  if (bases < 1 || bases > memory_.bases()) expect("bases in use", bases, memory_.active());
+  if (bases < 1 || bases > memory_.bases()) expect_bases(bases, memory_.active());
   bases_.reshape(bases);
   bases_.load(in);
   in.plane("variance", variance_);

@@ -12,7 +12,7 @@ namespace eigenlight {
 namespace {
 
 // Changes when the saved bytes do.
-constexpr std::uint32_t kStateVersion = 1;
+constexpr std::int32_t kStateVersion = 1;
 
 struct Counts {
   std::int64_t surface = 0, non_finite = 0;
@@ -78,13 +78,6 @@ void FrameByFrame::take_signal() {
 
 void FrameByFrame::save(StateWriter& out) const { out.value(name_, kStateVersion); }
 
-void FrameByFrame::load(StateReader& in) {
-  std::uint32_t version = 0;
-  in.value(name_, version);
-  if (version != kStateVersion) {
-    throw std::runtime_error(
-        fmt::format("state of '{}': version {}, expected {}", name_, version, kStateVersion));
-  }
-}
+void FrameByFrame::load(StateReader& in) { in.version(name_, kStateVersion); }
 
 }  // namespace eigenlight

@@ -1,8 +1,7 @@
 // Blockwise multi-order feature regression, as published.
 #pragma once
 
-#include "temporal/baselines/basis_history.h"
-#include "temporal/denoiser.h"
+#include "temporal/baselines/blended_history.h"
 
 namespace eigenlight {
 
@@ -25,36 +24,19 @@ struct BmfrOptions {
 /// are those of reproject/taps.h instead of limits on position and normal that the authors set for
 /// each scene. Samples that are not finite take part in nothing: their pixels keep their history,
 /// or show the fit of their block alone.
-class Bmfr final : public Denoiser {
+class Bmfr final : public BlendedHistory {
  public:
   static constexpr float kMostFrames = 255.0f;
 
   explicit Bmfr(const DenoiserOptions& options, const BmfrOptions& parts = {});
 
-  [[nodiscard]] const Planes<3>* step(FrameSource& source) override;
-  [[nodiscard]] const Frame& frame() const override { return frame_; }
-  [[nodiscard]] const FrameReport& report() const override { return report_; }
-  [[nodiscard]] const Plane<float>& age() const override { return age_; }
-  void reset() override { history_.reset(); }
-  void save(StateWriter& out) const override;
-  void load(StateReader& in) override;
-
  private:
-  struct Counts {
-    std::int64_t surface = 0, fresh = 0, non_finite = 0;
-  };
-
-  void accumulate(const Tile& tile, Counts& counts);
+  void blend_tile(const Tile& tile) override;
+  [[nodiscard]] const Planes<3>& finish() override;
   void blend_fit(const Tile& tile);
 
   BmfrOptions options_;
-  TileGrid tiles_;
-  Frame frame_;
-  FrameReport report_;
-  BasisHistory history_;  // first basis: noisy light; second: fits
-  Planes<3> light_, output_;
-  Plane<float> age_;
-  std::vector<Counts> counts_;  // per tile
+  Planes<3> light_, output_;  // bases of the history: noisy light, fits
 };
 
 }  // namespace eigenlight

@@ -10,7 +10,7 @@ namespace eigenlight {
 namespace {
 
 // Changes when the saved bytes do.
-constexpr std::uint32_t kStateVersion = 2;
+constexpr std::int32_t kStateVersion = 2;
 
 }  // namespace
 
@@ -133,12 +133,7 @@ void Chen2012::save(StateWriter& out) const {
 }
 
 void Chen2012::load(StateReader& in) {
-  std::uint32_t version = 0;
-  in.value("chen2012", version);
-  if (version != kStateVersion) {
-    throw std::runtime_error(
-        fmt::format("state of 'chen2012': version {}, expected {}", version, kStateVersion));
-  }
+  in.version("chen2012", kStateVersion);
   in.value("number", number_);
   number_ = std::clamp(number_, 0, static_cast<int>(kMostFrames));
   history_.load(in);

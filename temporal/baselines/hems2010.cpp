@@ -11,7 +11,7 @@ namespace eigenlight {
 namespace {
 
 // Changes when the saved bytes do.
-constexpr std::uint32_t kStateVersion = 1;
+constexpr std::int32_t kStateVersion = 1;
 
 glm::vec3 at(const Planes<3>& planes, glm::ivec2 p) {
   return {planes[0](p.x, p.y), planes[1](p.x, p.y), planes[2](p.x, p.y)};
@@ -216,12 +216,7 @@ void Hems2010::save(StateWriter& out) const {
 }
 
 void Hems2010::load(StateReader& in) {
-  std::uint32_t version = 0;
-  in.value("hems2010", version);
-  if (version != kStateVersion) {
-    throw std::runtime_error(
-        fmt::format("state of 'hems2010': version {}, expected {}", version, kStateVersion));
-  }
+  in.version("hems2010", kStateVersion);
   std::size_t frames = 0;
   in.value("frames", frames);
   if (frames > static_cast<std::size_t>(options_.frames)) {

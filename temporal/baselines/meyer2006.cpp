@@ -9,7 +9,7 @@ namespace eigenlight {
 namespace {
 
 // Changes when the saved bytes do.
-constexpr std::uint32_t kStateVersion = 1;
+constexpr std::int32_t kStateVersion = 1;
 // Of a pixel: the planes of Frame, a sample and, spread over the frames of its track, its bases.
 constexpr std::int64_t kPixelBytes = 150;
 
@@ -178,12 +178,7 @@ void Meyer2006::save(StateWriter& out) const {
 }
 
 void Meyer2006::load(StateReader& in) {
-  std::uint32_t version = 0;
-  in.value("meyer2006", version);
-  if (version != kStateVersion) {
-    throw std::runtime_error(
-        fmt::format("state of 'meyer2006': version {}, expected {}", version, kStateVersion));
-  }
+  in.version("meyer2006", kStateVersion);
   int bases = 0;
   Extent size;
   in.value("bases", bases);

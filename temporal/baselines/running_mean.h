@@ -1,8 +1,7 @@
 // The simplest history there is: every pixel's mean, carried along with its surface.
 #pragma once
 
-#include "temporal/baselines/basis_history.h"
-#include "temporal/denoiser.h"
+#include "temporal/baselines/blended_history.h"
 
 namespace eigenlight {
 
@@ -11,34 +10,18 @@ namespace eigenlight {
 /// mean * age, so that the four taps weigh by what stands behind them and a pixel that has yet to
 /// see a finite sample gives nothing. A pixel that is not finite keeps its history, or is 0 and
 /// stays new without one.
-class RunningMean final : public Denoiser {
+class RunningMean final : public BlendedHistory {
  public:
   /// Longest mean: that of the project's comparison table, about a second of film.
   static constexpr float kMostFrames = 32.0f;
 
   explicit RunningMean(const DenoiserOptions& options);
 
-  [[nodiscard]] const Planes<3>* step(FrameSource& source) override;
-  [[nodiscard]] const Frame& frame() const override { return frame_; }
-  [[nodiscard]] const FrameReport& report() const override { return report_; }
-  [[nodiscard]] const Plane<float>& age() const override { return age_; }
-  void reset() override { history_.reset(); }
-  void save(StateWriter& out) const override;
-  void load(StateReader& in) override;
-
  private:
-  struct Counts {
-    std::int64_t surface = 0, fresh = 0, non_finite = 0;
-  };
+  void blend_tile(const Tile& tile) override;
+  [[nodiscard]] const Planes<3>& finish() override { return output_; }
 
-  void update(const Tile& tile, Counts& counts);
-
-  Frame frame_;
-  FrameReport report_;
-  BasisHistory history_;  // one basis: mean * age
-  Planes<3> output_;
-  Plane<float> age_;
-  std::vector<Counts> counts_;  // per tile
+  Planes<3> output_;  // the one basis of the history is mean * age
 };
 
 }  // namespace eigenlight

@@ -1,9 +1,8 @@
 // Spatiotemporal variance-guided filtering, as published.
 #pragma once
 
-#include "temporal/baselines/basis_history.h"
+#include "temporal/baselines/blended_history.h"
 #include "temporal/baselines/svgf_filter.h"
-#include "temporal/denoiser.h"
 
 namespace eigenlight {
 
@@ -30,40 +29,23 @@ struct SvgfOptions {
 ///      (section 4.3, svgf_filter.h).
 /// n saturates at 32 frames. Samples that are not finite take part in nothing: their pixels keep
 /// their history, or are filled from the window; where that is empty too they are 0.
-class Svgf final : public Denoiser {
+class Svgf final : public BlendedHistory {
  public:
   static constexpr float kMostFrames = 32.0f;
   static constexpr float kYoung = 4.0f;  ///< frames: from then on history tells the variance
 
   explicit Svgf(const DenoiserOptions& options, const SvgfOptions& parts = {});
 
-  [[nodiscard]] const Planes<3>* step(FrameSource& source) override;
-  [[nodiscard]] const Frame& frame() const override { return frame_; }
-  [[nodiscard]] const FrameReport& report() const override { return report_; }
-  [[nodiscard]] const Plane<float>& age() const override { return age_; }
-  void reset() override { history_.reset(); }
-  void save(StateWriter& out) const override;
-  void load(StateReader& in) override;
-
  private:
-  struct Counts {
-    std::int64_t surface = 0, fresh = 0, non_finite = 0;
-  };
-
-  void accumulate(const Tile& tile, Counts& counts);
+  void blend_tile(const Tile& tile) override;
+  [[nodiscard]] const Planes<3>& finish() override;
   void estimate(const Tile& tile);
   void estimate_from_window(glm::ivec2 p);
-  void filter();
   void feed_back(const Tile& tile);
 
   SvgfOptions options_;
-  TileGrid tiles_;
-  Frame frame_;
-  FrameReport report_;
-  BasisHistory history_;  // first basis: color; second: m_1, m_2, 0
-  SvgfImage image_, scratch_;
-  Plane<float> age_, known_;
-  std::vector<Counts> counts_;  // per tile
+  SvgfImage image_, scratch_;  // bases of the history: color; m_1, m_2, 0
+  Plane<float> known_;
 };
 
 }  // namespace eigenlight

@@ -1,0 +1,52 @@
+#include "temporal/baselines/blended_history.h"
+
+#include <utility>
+
+#include "temporal/stage_clock.h"
+
+namespace eigenlight {
+
+BlendedHistory::BlendedHistory(Extent extent, Form form)
+    : form_(std::move(form)),
+      tiles_(stage_tiles(extent)),
+      history_(extent, form_.bases, form_.history),
+      age_(extent),
+      counts_(static_cast<std::size_t>(tiles_.count())) {}
+
+const Planes<3>* BlendedHistory::step(FrameSource& source) {
+  StageClock clock;
+  if (!source.next(frame_)) return nullptr;
+  report_ = {};
+  report_[Stage::kSource] = clock.lap();
+  const BasisHistory::Warp warp = history_.warp(frame_);
+  report_[Stage::kReproject] = clock.lap();
+  for_each_tile(tiles_, [&](const Tile& tile) { blend_tile(tile); });
+  report_[Stage::kUpdate] = clock.lap();
+  const Planes<3>& picture = finish();
+  history_.keep(frame_);
+  report_[Stage::kFilter] = clock.lap();
+
+  report_.frame = frame_.index;
+  report_.cut = warp.cut;
+  report_.skipped_warp = warp.skipped;
+  for (const Counts& counts : counts_) {
+    report_.surface_pixels += counts.surface;
+    report_.new_pixels += counts.fresh;
+    report_.non_finite_pixels += counts.non_finite;
+  }
+  report_.rays = frame_.rays;
+  report_.non_finite_samples = frame_.non_finite_samples;
+  return &picture;
+}
+
+void BlendedHistory::save(StateWriter& out) const {
+  out.value(form_.name, form_.version);
+  history_.save(out);
+}
+
+void BlendedHistory::load(StateReader& in) {
+  in.version(form_.name, form_.version);
+  history_.load(in);
+}
+
+}  // namespace eigenlight

@@ -1,0 +1,86 @@
+// What mean, svgf and bmfr have in common: a history into which each frame is blended.
+#pragma once
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "frame/tiles.h"
+#include "temporal/baselines/basis_history.h"
+#include "temporal/denoiser.h"
+
+namespace eigenlight {
+
+/// Per frame: history is warped, each pixel's sample is blended into it (blend_tile), and the
+/// picture made of it (finish). A sample is usable on a surface if all of its channels are finite;
+/// what is not usable takes part in nothing and is counted.
+class BlendedHistory : public Denoiser {
+ public:
+  [[nodiscard]] const Planes<3>* step(FrameSource& source) final;
+  [[nodiscard]] const Frame& frame() const final { return frame_; }
+  [[nodiscard]] const FrameReport& report() const final { return report_; }
+  [[nodiscard]] const Plane<float>& age() const final { return age_; }
+  void reset() final { history_.reset(); }
+  void save(StateWriter& out) const final;
+  /// Throws std::runtime_error on the state of another method or version, and where BasisHistory
+  /// does.
+  void load(StateReader& in) final;
+
+ protected:
+  struct Form {
+    std::string name;      ///< of the method, which its states bear
+    std::int32_t version;  ///< of its states
+    int bases;             ///< of its history
+    HistoryOptions history = {};
+  };
+
+  BlendedHistory(Extent extent, Form form);
+
+  /// Blends this frame into the history of a tile, by for_each_sample().
+  virtual void blend_tile(const Tile& tile) = 0;
+  /// The picture, valid until the next frame. What it writes into the history stays there.
+  [[nodiscard]] virtual const Planes<3>& finish() = 0;
+
+  /// Calls blend(x, y, usable) for each pixel of the tile, which leaves the new age in the history;
+  /// that is copied to age().
+  template <typename Blend>
+  void for_each_sample(const Tile& tile, const Blend& blend);
+
+  [[nodiscard]] const TileGrid& tiles() const { return tiles_; }
+  [[nodiscard]] BasisField& bases() { return history_.bases(); }
+
+ private:
+  struct Counts {
+    std::int64_t surface = 0, fresh = 0, non_finite = 0;
+  };
+
+  Form form_;
+  TileGrid tiles_;
+  Frame frame_;
+  FrameReport report_;
+  BasisHistory history_;
+  Plane<float> age_;
+  std::vector<Counts> counts_;  // per tile
+};
+
+template <typename Blend>
+void BlendedHistory::for_each_sample(const Tile& tile, const Blend& blend) {
+  const BasisField& field = history_.bases();
+  const auto& u = frame_.indirect;
+  Counts& counts = counts_[static_cast<std::size_t>(tile.index)];
+  counts = {};
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    for (int x = tile.x0; x < tile.x1; ++x) {
+      const bool surface = frame_.surface.id(x, y) != 0;
+      const bool finite =
+          std::isfinite(u[0](x, y)) && std::isfinite(u[1](x, y)) && std::isfinite(u[2](x, y));
+      counts.surface += surface ? 1 : 0;
+      counts.fresh += surface && field.age(x, y) == 0.0f ? 1 : 0;
+      counts.non_finite += surface && !finite ? 1 : 0;
+      blend(x, y, surface && finite);
+      age_(x, y) = field.age(x, y);
+    }
+  }
+}
+
+}  // namespace eigenlight
