@@ -224,11 +224,11 @@ void EigenDenoiser::project(bool resampled) {
   }
   coefficients_.set_used(memory_.active());
   predict(resampled);
+  const auto count_again = [&](const Tile& block) {
+    if (options_.correct) correction_.count(correction_inputs(), block);
+  };
   report_.bounded_pixels = fireflies_.bound({expected_, old_age_, samples_, variance_},
-                                            {residual_, innovation_}, [&](const Tile& block) {
-                                              if (options_.correct)
-                                                correction_.count(correction_inputs(), block);
-                                            });
+                                            {residual_, innovation_}, count_again);
   const double corrected =
       options_.correct ? correction_.process(correction_inputs(), innovation_) : 0.0;
   report_.skipped_correction =
