@@ -1,3 +1,4 @@
+#include "frame/float_traps.h"
 #include "frame/prefetch.h"
 #include "temporal/guides.h"
 
@@ -56,6 +57,7 @@ namespace eigenlight {
 HWY_EXPORT(CountGuides);
 
 GuideCounts count_guides(const GBuffer& surface, const Tile& row) {
+  const FloatTrapsOff comparisons_meet_nan;
   return HWY_DYNAMIC_DISPATCH(CountGuides)(surface, row);
 }
 

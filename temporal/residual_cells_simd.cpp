@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "frame/float_traps.h"
 #include "frame/prefetch.h"
 #include "reproject/taps.h"
 #include "temporal/residual_cells.h"
@@ -221,11 +222,13 @@ HWY_EXPORT(LoadCells);
 void test_blocks(const CorrectionInputs& in, const Tile& area, std::span<ResidualBlock> blocks) {
   EL_DCHECK(area.y1 - area.y0 <= kResidualBlock);
   EL_DCHECK(area.x0 % kResidualBlock == 0 && area.y0 % kResidualBlock == 0);
+  const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(TestBlocks)(in, area, blocks);
 }
 
 void load_cells(const CorrectionInputs& in, const Tile& tile, ResidualCells& cells) {
   EL_DCHECK(tile.x0 % kCellStep == 0);
+  const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(LoadCells)(in, tile, cells);
 }
 

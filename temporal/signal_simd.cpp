@@ -2,6 +2,7 @@
 #include <array>
 #include <limits>
 
+#include "frame/float_traps.h"
 #include "frame/prefetch.h"
 #include "reproject/taps.h"
 #include "temporal/firefly_bound.h"
@@ -218,6 +219,7 @@ HWY_EXPORT(FreshVariance);
 
 SignalCounts merge_samples(const SignalInputs& in, const Tile& tile, const SignalOutputs& out) {
   EL_DCHECK(tile.x1 - tile.x0 <= kSegment);
+  const FloatTrapsOff comparisons_meet_nan;
   return HWY_DYNAMIC_DISPATCH(MergeSamples)(in, tile, out);
 }
 
@@ -227,6 +229,7 @@ void estimate_variance(const EstimateInputs& in, const Tile& tile, const Estimat
 
 void fresh_variance(const FreshInputs& in, const Tile& tile, Plane<float>& variance) {
   EL_DCHECK(tile.x1 - tile.x0 <= kSegment);
+  const FloatTrapsOff comparisons_meet_nan;
   HWY_DYNAMIC_DISPATCH(FreshVariance)(in, tile, variance);
 }
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "frame/float_traps.h"
 #include "frame/prefetch.h"
 #include "reproject/taps.h"
 #include "temporal/residual_cells.h"
@@ -216,6 +217,7 @@ HWY_EXPORT(SpreadCells);
 
 void spread_cells(const ResidualCells& cells, const Frame& guides, const Tile& tile,
                   const SpreadOutputs& out) {
+  const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(SpreadCells)(cells, guides, tile, out);
 }
 
