@@ -98,7 +98,7 @@ Plane<std::uint8_t> heat_map(const Planes<3>& error) {
   parallel_for(picture.height(), [&](int y) {
     for (int x = 0; x < picture.width(); ++x) {
       const Tile block{x * factor, y * factor, (x + 1) * factor, (y + 1) * factor, 0};
-      const double root = std::sqrt(mean_square(error, block));
+      const double root = std::max(std::sqrt(mean_square(error, block)), kLow);
       const auto color = ramp_color(std::log(root / kLow) / std::log(kHigh / kLow));
       std::copy(color.begin(), color.end(), picture.at(x, y));
     }
