@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/glm.hpp>
+#include <limits>
 #include <utility>
 
 #include "frame/tiles.h"
@@ -122,7 +123,11 @@ SetSums sum_frame(const MetricFrame& frame, const MetricFrame* previous,
   return total;
 }
 
-double decibels(double mean_square) { return -10.0 * std::log10(mean_square); }
+// Infinite where nothing differs.
+double decibels(double mean_square) {
+  return mean_square == 0.0 ? std::numeric_limits<double>::infinity()
+                            : -10.0 * std::log10(mean_square);
+}
 
 void fill_temporal(const Sums& sums, const MetricOptions& options, Figures& out) {
   if (sums.temporal_pixels == 0) return;

@@ -21,7 +21,7 @@ constexpr float kLargestHalf = 65504.0f;
     const float* row = plane.row(y);
     for (int x = 0; x < plane.width(); ++x) {
       // NaN compares false, and Inf has its own half.
-      if (std::abs(row[x]) > kLargestHalf && !std::isinf(row[x])) return true;
+      if (std::isgreater(std::abs(row[x]), kLargestHalf) && !std::isinf(row[x])) return true;
     }
   }
   return false;

@@ -8,8 +8,8 @@
 namespace eigenlight {
 
 void Lab::note(double figure, std::string_view what) {
-  if (std::isnan(worst_) || figure < worst_) return;  // a NaN passes
-  if (figure == worst_ && worst_step_ > 0) return;    // the first of equals
+  if (std::isnan(worst_) || std::isless(figure, worst_)) return;  // a NaN passes
+  if (figure == worst_ && worst_step_ > 0) return;                // the first of equals
   worst_ = figure;
   worst_what_ = what;
   worst_step_ = steps_;

@@ -1,6 +1,7 @@
 // The cases of `eigenlight stress`: what each checks, and the bound that it must stay within.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,7 +17,7 @@ struct StressFinding {
   std::string where;  ///< what the worst figure belongs to; may be empty
   std::string note;   ///< for people, beside the figure; may be empty
 
-  [[nodiscard]] bool pass() const { return figure <= bound; }  // NaN fails
+  [[nodiscard]] bool pass() const { return std::islessequal(figure, bound); }  // NaN fails
 };
 
 struct StressCase {
