@@ -1,11 +1,11 @@
 #include "temporal/frame_by_frame.h"
 
-#include <cmath>
 #include <cstddef>
 #include <utility>
 #include <vector>
 
 #include "frame/tiles.h"
+#include "temporal/sample_counts.h"
 #include "temporal/stage_clock.h"
 
 namespace eigenlight {
@@ -13,10 +13,6 @@ namespace {
 
 // Changes when the saved bytes do.
 constexpr std::int32_t kStateVersion = 1;
-
-struct Counts {
-  std::int64_t surface = 0, non_finite = 0;
-};
 
 }  // namespace
 
@@ -51,29 +47,21 @@ const Planes<3>* FrameByFrame::step(FrameSource& source) {
 
 void FrameByFrame::take_signal() {
   const TileGrid grid = stage_tiles(age_.extent());
-  std::vector<Counts> counts(static_cast<std::size_t>(grid.count()));
+  std::vector<SampleCounts> counts(static_cast<std::size_t>(grid.count()));
   for_each_tile(grid, [&](const Tile& tile) {
-    Counts& count = counts[static_cast<std::size_t>(tile.index)];
+    SampleCounts& count = counts[static_cast<std::size_t>(tile.index)];
     for (int y = tile.y0; y < tile.y1; ++y) {
       for (int x = tile.x0; x < tile.x1; ++x) {
-        const bool surface = frame_.surface.id(x, y) != 0;
-        bool finite = true;
-        for (const auto& plane : frame_.indirect) finite = finite && std::isfinite(plane(x, y));
-        const bool used = surface && finite;
+        const bool used = count.take(frame_, x, y);
         for (std::size_t c = 0; c < 3; ++c) {
           signal_[c](x, y) = used ? frame_.indirect[c](x, y) : 0.0f;
         }
         weight_(x, y) = used ? 1.0f : 0.0f;
-        age_(x, y) = surface ? 1.0f : 0.0f;
-        count.surface += surface ? 1 : 0;
-        count.non_finite += surface && !finite ? 1 : 0;
+        age_(x, y) = frame_.surface.id(x, y) != 0 ? 1.0f : 0.0f;
       }
     }
   });
-  for (const Counts& count : counts) {
-    report_.surface_pixels += count.surface;
-    report_.non_finite_pixels += count.non_finite;
-  }
+  for (const SampleCounts& count : counts) count.add_to(report_);
 }
 
 void FrameByFrame::save(StateWriter& out) const { out.value(name_, kStateVersion); }

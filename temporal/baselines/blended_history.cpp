@@ -29,11 +29,7 @@ const Planes<3>* BlendedHistory::step(FrameSource& source) {
   report_.frame = frame_.index;
   report_.cut = warp.cut;
   report_.skipped_warp = warp.skipped;
-  for (const Counts& counts : counts_) {
-    report_.surface_pixels += counts.surface;
-    report_.new_pixels += counts.fresh;
-    report_.non_finite_pixels += counts.non_finite;
-  }
+  for (const SampleCounts& counts : counts_) counts.add_to(report_);
   report_.rays = frame_.rays;
   report_.non_finite_samples = frame_.non_finite_samples;
   return &picture;

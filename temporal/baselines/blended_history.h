@@ -1,13 +1,12 @@
 // What mean, svgf and bmfr have in common: a history into which each frame is blended.
 #pragma once
 
-#include <cmath>
 #include <string>
 #include <vector>
 
 #include "frame/tiles.h"
 #include "temporal/baselines/basis_history.h"
-#include "temporal/denoiser.h"
+#include "temporal/sample_counts.h"
 
 namespace eigenlight {
 
@@ -50,34 +49,25 @@ class BlendedHistory : public Denoiser {
   [[nodiscard]] BasisField& bases() { return history_.bases(); }
 
  private:
-  struct Counts {
-    std::int64_t surface = 0, fresh = 0, non_finite = 0;
-  };
-
   Form form_;
   TileGrid tiles_;
   Frame frame_;
   FrameReport report_;
   BasisHistory history_;
   Plane<float> age_;
-  std::vector<Counts> counts_;  // per tile
+  std::vector<SampleCounts> counts_;  // per tile
 };
 
 template <typename Blend>
 void BlendedHistory::for_each_sample(const Tile& tile, const Blend& blend) {
   const BasisField& field = history_.bases();
-  const auto& u = frame_.indirect;
-  Counts& counts = counts_[static_cast<std::size_t>(tile.index)];
+  SampleCounts& counts = counts_[static_cast<std::size_t>(tile.index)];
   counts = {};
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0; x < tile.x1; ++x) {
-      const bool surface = frame_.surface.id(x, y) != 0;
-      const bool finite =
-          std::isfinite(u[0](x, y)) && std::isfinite(u[1](x, y)) && std::isfinite(u[2](x, y));
-      counts.surface += surface ? 1 : 0;
-      counts.fresh += surface && field.age(x, y) == 0.0f ? 1 : 0;
-      counts.non_finite += surface && !finite ? 1 : 0;
-      blend(x, y, surface && finite);
+      const bool fresh = frame_.surface.id(x, y) != 0 && field.age(x, y) == 0.0f;
+      counts.fresh += fresh ? 1 : 0;
+      blend(x, y, counts.take(frame_, x, y));
       age_(x, y) = field.age(x, y);
     }
   }

@@ -60,7 +60,7 @@ const Planes<3>* Hems2010::step(FrameSource& source) {
            frame_.extent().width, frame_.extent().height, extent.width, extent.height);
   report_.cut = past_.empty() || past_.front().index != frame_.previous_index;
   if (report_.cut) past_.clear();
-  const auto for_tiles = [&](void (Hems2010::*work)(const Tile&, Counts&)) {
+  const auto for_tiles = [&](void (Hems2010::*work)(const Tile&, SampleCounts&)) {
     for_each_tile(tiles_, [&](const Tile& tile) {
       (this->*work)(tile, counts_[static_cast<std::size_t>(tile.index)]);
     });
@@ -73,29 +73,21 @@ const Planes<3>* Hems2010::step(FrameSource& source) {
   report_[Stage::kReproject] = clock.lap();
 
   report_.frame = frame_.index;
-  for (const Counts& counts : counts_) {
-    report_.surface_pixels += counts.surface;
-    report_.new_pixels += counts.fresh;
-    report_.non_finite_pixels += counts.non_finite;
-  }
+  for (const SampleCounts& counts : counts_) counts.add_to(report_);
   report_.rays = frame_.rays;
   report_.non_finite_samples = frame_.non_finite_samples;
   return &output_;
 }
 
 // u, where it may be used.
-void Hems2010::take_light(const Tile& tile, Counts& counts) {
+void Hems2010::take_light(const Tile& tile, SampleCounts& counts) {
   const auto& u = frame_.indirect;
   counts = {};
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0; x < tile.x1; ++x) {
-      const bool surface = frame_.surface.id(x, y) != 0;
-      const bool finite =
-          std::isfinite(u[0](x, y)) && std::isfinite(u[1](x, y)) && std::isfinite(u[2](x, y));
-      counts.surface += surface ? 1 : 0;
-      counts.non_finite += surface && !finite ? 1 : 0;
-      usable_(x, y) = surface && finite ? 1.0f : 0.0f;
-      for (std::size_t c = 0; c < 3; ++c) light_[c](x, y) = surface && finite ? u[c](x, y) : 0.0f;
+      const bool usable = counts.take(frame_, x, y);
+      usable_(x, y) = usable ? 1.0f : 0.0f;
+      for (std::size_t c = 0; c < 3; ++c) light_[c](x, y) = usable ? u[c](x, y) : 0.0f;
     }
   }
 }
@@ -118,7 +110,7 @@ void Hems2010::smooth() {
   });
 }
 
-void Hems2010::gather(const Tile& tile, Counts& counts) {
+void Hems2010::gather(const Tile& tile, SampleCounts& counts) {
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0; x < tile.x1; ++x) {
       for (auto& plane : output_) plane(x, y) = 0.0f;

@@ -5,7 +5,7 @@
 
 #include "reproject/taps.h"
 #include "spatial/cross_bilateral.h"
-#include "temporal/denoiser.h"
+#include "temporal/sample_counts.h"
 
 namespace eigenlight {
 
@@ -46,9 +46,6 @@ class Hems2010 final : public Denoiser {
   void load(StateReader& in) override;
 
  private:
-  struct Counts {
-    std::int64_t surface = 0, fresh = 0, non_finite = 0;
-  };
   struct PastFrame {
     int index = 0;
     Camera camera;
@@ -59,9 +56,9 @@ class Hems2010 final : public Denoiser {
     Plane<float> known;  // 1 where there is such, else 0
   };
 
-  void take_light(const Tile& tile, Counts& counts);
+  void take_light(const Tile& tile, SampleCounts& counts);
   void smooth();
-  void gather(const Tile& tile, Counts& counts);
+  void gather(const Tile& tile, SampleCounts& counts);
   [[nodiscard]] bool gather_pixel(glm::ivec2 p);  // whether any past frame shows the point
   void keep();
 
@@ -73,7 +70,7 @@ class Hems2010 final : public Denoiser {
   std::vector<PastFrame> past_;  // the latest first
   Planes<3> light_, smooth_, output_;
   Plane<float> usable_, known_, age_;
-  std::vector<Counts> counts_;  // per tile
+  std::vector<SampleCounts> counts_;  // per tile
 };
 
 }  // namespace eigenlight

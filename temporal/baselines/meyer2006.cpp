@@ -1,8 +1,8 @@
 #include "temporal/baselines/meyer2006.h"
 
-#include <cmath>
 #include <utility>
 
+#include "temporal/sample_counts.h"
 #include "temporal/stage_clock.h"
 
 namespace eigenlight {
@@ -140,19 +140,13 @@ void Meyer2006::take_picture(FrameSource& source) {
 void Meyer2006::write_report() {
   report_.frame = frame_.index;
   report_.cut = picture_.cut;
-  report_.new_pixels = picture_.fresh;
   report_.rays = frame_.rays;
   report_.non_finite_samples = frame_.non_finite_samples;
-  const auto& u = frame_.indirect;
+  SampleCounts counts{.fresh = picture_.fresh};
   for (int y = 0; y < extent_.height; ++y) {
-    for (int x = 0; x < extent_.width; ++x) {
-      if (frame_.surface.id(x, y) == 0) continue;
-      const bool finite =
-          std::isfinite(u[0](x, y)) && std::isfinite(u[1](x, y)) && std::isfinite(u[2](x, y));
-      ++report_.surface_pixels;
-      report_.non_finite_pixels += finite ? 0 : 1;
-    }
+    for (int x = 0; x < extent_.width; ++x) counts.take(frame_, x, y);
   }
+  counts.add_to(report_);
 }
 
 void Meyer2006::reset() {
