@@ -49,6 +49,10 @@ Correction::Correction(Extent extent, const CorrectionOptions& options)
   options.validate();
 }
 
+void Correction::place(const GBuffer& surface, const Tile& area) {
+  for_needed_cells(area, [&](const Tile& cells) { place_cells(surface, cells, cells_); });
+}
+
 void Correction::count(const CorrectionInputs& in, const Tile& area) {
   for (int y = area.y0; y < area.y1; y += kResidualBlock) {
     const Tile row{area.x0, y, area.x1, std::min(y + kResidualBlock, area.y1), 0};
@@ -57,18 +61,22 @@ void Correction::count(const CorrectionInputs& in, const Tile& area) {
     test_blocks(in, row,
                 std::span(blocks_).subspan(static_cast<std::size_t>(first),
                                            static_cast<std::size_t>(blocks)));
-    count_cells(in, row);
   }
+  for_needed_cells(area, [&](const Tile& cells) { load_cells(in, cells, cells_); });
 }
 
-// A row of blocks is four rows of cells, all in one row of tiles.
-void Correction::count_cells(const CorrectionInputs& in, const Tile& row) {
-  const int end = (row.x1 + 1) / 2, y0 = row.y0 / 2, y1 = (row.y1 + 1) / 2;
-  for (int x = row.x0 / 2 / kCellStep * kCellStep, next = 0; x < end; x = next) {
-    const int column = x / grid_.tile_width();
-    next = std::min((column + 1) * grid_.tile_width(), end);
-    const int tile = y0 / grid_.tile_height() * grid_.columns() + column;
-    if (loaded_[static_cast<std::size_t>(tile)] != 0) load_cells(in, {x, y0, next, y1, 0}, cells_);
+// Calls body(cells) for those of the area that the last frame needed, tile by tile.
+template <typename Body>
+void Correction::for_needed_cells(const Tile& area, const Body& body) const {
+  const int width = grid_.tile_width(), height = grid_.tile_height();
+  const int right = (area.x1 + 1) / 2, bottom = (area.y1 + 1) / 2;
+  for (int y0 = area.y0 / 2, y1 = 0; y0 < bottom; y0 = y1) {
+    y1 = std::min((y0 / height + 1) * height, bottom);
+    for (int x0 = area.x0 / 2 / kCellStep * kCellStep, x1 = 0; x0 < right; x0 = x1) {
+      x1 = std::min((x0 / width + 1) * width, right);
+      const int tile = y0 / height * grid_.columns() + x0 / width;
+      if (loaded_[static_cast<std::size_t>(tile)] != 0) body(Tile{x0, y0, x1, y1, tile});
+    }
   }
 }
 
@@ -91,7 +99,9 @@ double Correction::process(const CorrectionInputs& in, Plane<float>& innovation)
   // This and the spreading read many planes and need nothing of the rows around: line by line.
   for_each_segment(grid_, [&](const Tile& row) {
     const auto tile = static_cast<std::size_t>(row.index);
-    if (loaded_[tile] != 0 && was_loaded_[tile] == 0) load_cells(in, row, cells_);
+    if (loaded_[tile] == 0 || was_loaded_[tile] != 0) return;
+    place_cells(in.guides.surface, row, cells_);
+    load_cells(in, row, cells_);
   });
   filter_.process(cells_.guides, wanted_, cells_.mean, cells_.noise);
   on(loaded_, [&](const Tile& cells) { find_factor(cells); });

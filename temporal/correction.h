@@ -33,10 +33,14 @@ class Correction {
  public:
   Correction(Extent extent, const CorrectionOptions& options);
 
+  /// Takes in the geometry of `area`, an even number of rows from an even one on (or up to the last
+  /// one), for the cells that the last frame needed, while it is in the cache. To be called for all
+  /// of the image before count(), in any order and on any thread (apart: cells are written up to 16
+  /// pixels beside the area).
+  void place(const GBuffer& surface, const Tile& area);
   /// Takes in the pixels of `area`, one or more blocks of 8 x 8 side by side: their blocks are
-  /// tested, and cells are filled that the last frame needed, while all of it is in the cache. To
-  /// be called for all of the image before process(), in any order and on any thread (apart: cells
-  /// are written up to 16 pixels beside the area); again for blocks that change.
+  /// tested, and cells are filled that the last frame needed. To be called for all of the image
+  /// before process(), as place(); again for blocks that change.
   void count(const CorrectionInputs& in, const Tile& area);
   /// Leaves what is to be added to the prediction in correction(), and subtracts its luminance from
   /// `innovation`, which may be that of the inputs. Returns the share of confirmed pixels corrected
@@ -57,7 +61,8 @@ class Correction {
     int all = 0, significant = 0;
   };
 
-  void count_cells(const CorrectionInputs& in, const Tile& row);
+  template <typename Body>
+  void for_needed_cells(const Tile& area, const Body& body) const;
   void count_tiles();
   [[nodiscard]] bool open_gates();
   void close_tile(const Tile& tile);

@@ -113,13 +113,20 @@ void EigenDenoiser::start_frame(const StageTime& time) {
   report_.cut = !surfaces_.is_followed_by(frame_);
   report_[Stage::kSource] = time;
   std::fill(counts_.begin(), counts_.end(), TileCount{});
-  for_each_segment(tiles_, [&](const Tile& row) {
-    const GuideCounts found = count_guides(frame_.surface, row);
-    TileCount& count = counts_[static_cast<std::size_t>(row.index)];
-    count.surface += found.surface;
-    count.unguided += found.surface - found.usable;
-    if (found.usable < found.surface) drop_unusable(row);
+  for_each_strip(tiles_, [&](const Strip& strip) {
+    for_each_band(strip, 2, [&](const Strip& band) {
+      for_each_segment(tiles_, band, [&](const Tile& row) { count_surface(row); });
+      if (options_.correct) correction_.place(frame_.surface, band.area);
+    });
   });
+}
+
+void EigenDenoiser::count_surface(const Tile& row) {
+  const GuideCounts found = count_guides(frame_.surface, row);
+  TileCount& count = counts_[static_cast<std::size_t>(row.index)];
+  count.surface += found.surface;
+  count.unguided += found.surface - found.usable;
+  if (found.usable < found.surface) drop_unusable(row);
 }
 
 void EigenDenoiser::drop_unusable(const Tile& row) {

@@ -71,6 +71,7 @@ class EigenDenoiser final : public Denoiser {
 
  private:
   void start_frame(const StageTime& time);
+  void count_surface(const Tile& row);
   void drop_unusable(const Tile& row);
   [[nodiscard]] bool is_empty(const Tile& tile) const;
   void warp_history();

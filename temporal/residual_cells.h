@@ -30,7 +30,7 @@ struct ResidualBlock {
 void test_blocks(const CorrectionInputs& in, const Tile& area, std::span<ResidualBlock> blocks);
 
 /// Cell (X, Y) stands for the pixels 2 X + {0, 1}, 2 Y + {0, 1} that show the surface of its upper
-/// left one: same object, and normals within the cosine that taps ask for.
+/// left one: same object, and normals within the cosine that taps ask for. These are its members.
 struct ResidualCells {
   explicit ResidualCells(Extent pixels);
 
@@ -38,9 +38,10 @@ struct ResidualCells {
   /// of its upper left pixel, but id 0 and depth +inf, as where there is no surface, if none of its
   /// pixels is confirmed: what says nothing must not count as a residual of 0.
   Frame guides;
-  Planes<3> mean;      ///< residual of the confirmed pixels
-  Plane<float> noise;  ///< variance of the mean's luminance: sum v (1/s + 1/n) / count^2
-  Plane<float> count;  ///< confirmed pixels, 0 to 4
+  Planes<3> mean;               ///< residual of the confirmed pixels
+  Plane<float> noise;           ///< variance of the mean's luminance: sum v (1/s + 1/n) / count^2
+  Plane<float> count;           ///< confirmed pixels, 0 to 4
+  Plane<std::uint8_t> members;  ///< bit q: the pixel at q % 2, q / 2 is one
 
   [[nodiscard]] Extent extent() const { return count.extent(); }
   /// Takes over the frame's camera: the ray of a cell's center is that of its upper left pixel.
@@ -50,7 +51,12 @@ struct ResidualCells {
 /// Cells are filled so many at a time along a row.
 inline constexpr int kCellStep = 8;
 
-/// Fills the cells of `tile` (in units of cells; its left edge a multiple of kCellStep).
+/// Gives the cells of `tile` (in units of cells; its left edge a multiple of kCellStep) their
+/// members and their geometry.
+void place_cells(const GBuffer& surface, const Tile& tile, ResidualCells& cells);
+
+/// Fills the placed cells of `tile` with what their confirmed members hold. Those without any lose
+/// their geometry, until they are placed again.
 void load_cells(const CorrectionInputs& in, const Tile& tile, ResidualCells& cells);
 
 struct SpreadOutputs {

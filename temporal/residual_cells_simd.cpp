@@ -2,7 +2,6 @@
 #include <limits>
 
 #include "frame/float_traps.h"
-#include "frame/prefetch.h"
 #include "reproject/taps.h"
 #include "temporal/residual_cells.h"
 
@@ -117,51 +116,66 @@ Quad<hn::Vec<D>> LoadQuad(D d, const Plane<T>& plane, const Place& place) {
   return quad;
 }
 
-// Ask for what the next row of cells will read of its surfaces, which nothing before it has read.
-void PrefetchSurfaces(const GBuffer& surface, const Place& place) {
-  if (!place.inside_y) return;
-  for (const int row : {place.rows[0] + 1, place.rows[1] + 1}) {
-    for (const auto& plane : surface.normal) prefetch_below(plane, place.column, row);
-    prefetch_below(surface.id, place.column, row);
-  }
-  prefetch_below(surface.depth, place.column, place.rows[0] + 1);
-}
-
-// Which of the four pixels are confirmed and show the surface of the first.
-Quad<MB> Members(const CorrectionInputs& in, const Place& place, const TapOptions& taps,
-                 ResidualCells& cells, int x, int y) {
+void PlaceCellVector(const GBuffer& from, const Place& place, ResidualCells& cells, int x, int y) {
   const B d;
+  const hn::RebindToSigned<B> di;
   const hn::RebindToUnsigned<B> du;
-  PrefetchSurfaces(in.guides.surface, place);
-  const auto id = LoadQuad(du, in.guides.surface.id, place);
-  const auto innovation = LoadQuad(d, in.innovation, place);
+  const VB normal_cosine = hn::Set(d, TapOptions().normal_cosine);
+  GBuffer& to = cells.guides.surface;
   VB cosine[4] = {hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d)};
   for (std::size_t c = 0; c < 3; ++c) {
-    const auto normal = LoadQuad(d, in.guides.surface.normal[c], place);
+    const auto normal = LoadQuad(d, from.normal[c], place);
     for (int q = 0; q < 4; ++q) cosine[q] = hn::MulAdd(normal.at[0], normal.at[q], cosine[q]);
-    hn::StoreU(normal.at[0], d, cells.guides.surface.normal[c].row(y) + x);
+    hn::StoreU(normal.at[0], d, to.normal[c].row(y) + x);
   }
-  Quad<MB> member;
-  auto any = hn::RebindMask(d, hn::Ne(id.at[0], id.at[0]));
+  hn::StoreU(LoadQuad(d, from.depth, place).at[0], d, to.depth.row(y) + x);
+  const auto id = LoadQuad(du, from.id, place);
+  hn::StoreU(id.at[0], du, to.id.row(y) + x);
+  auto members = hn::Set(di, 1);
+  for (int q = 1; q < 4; ++q) {
+    if (q > 1 && !place.inside_y) break;
+    MB same =
+        hn::And(hn::RebindMask(d, hn::Eq(id.at[q], id.at[0])), hn::Ge(cosine[q], normal_cosine));
+    if ((q & 1) != 0) same = hn::And(same, place.inside_x);
+    members = hn::Or(members, hn::IfThenElseZero(hn::RebindMask(di, same), hn::Set(di, 1 << q)));
+  }
+  const hn::Rebind<std::uint8_t, B> bytes;
+  hn::StoreU(hn::DemoteTo(bytes, members), bytes, cells.members.row(y) + x);
+}
+
+// The members that are confirmed.
+Quad<MB> Confirmed(const CorrectionInputs& in, const Place& place, const ResidualCells& cells,
+                   int x, int y) {
+  const B d;
+  const hn::RebindToSigned<B> di;
+  const hn::Rebind<std::uint8_t, B> bytes;
+  const auto members = hn::PromoteTo(di, hn::LoadU(bytes, cells.members.row(y) + x));
+  const auto innovation = LoadQuad(d, in.innovation, place);
+  Quad<MB> confirmed;
   for (int q = 0; q < 4; ++q) {
-    member.at[q] =
-        hn::AndNot(hn::IsNaN(innovation.at[q]), hn::RebindMask(d, hn::Eq(id.at[q], id.at[0])));
-    if (q > 0) {
-      member.at[q] = hn::And(member.at[q], hn::Ge(cosine[q], hn::Set(d, taps.normal_cosine)));
-    }
-    if ((q & 1) != 0) member.at[q] = hn::And(member.at[q], place.inside_x);
-    if (q > 1 && !place.inside_y) member.at[q] = hn::RebindMask(d, hn::Ne(id.at[0], id.at[0]));
-    any = hn::Or(any, member.at[q]);
+    const auto is_member = hn::TestBit(members, hn::Set(di, 1 << q));
+    confirmed.at[q] = hn::AndNot(hn::IsNaN(innovation.at[q]), hn::RebindMask(d, is_member));
   }
-  hn::StoreU(hn::IfThenElseZero(hn::RebindMask(du, any), id.at[0]), du,
-             cells.guides.surface.id.row(y) + x);
-  return member;
+  return confirmed;
+}
+
+// The filter knows by its depth that a cell has nothing to give.
+void DropEmpty(VB count, GBuffer& surface, int x, int y) {
+  const B d;
+  const hn::RebindToUnsigned<B> du;
+  const MB empty = hn::Eq(count, hn::Zero(d));
+  if (hn::AllFalse(d, empty)) return;
+  float* const depth = surface.depth.row(y) + x;
+  const VB infinite = hn::Set(d, std::numeric_limits<float>::infinity());
+  hn::StoreU(hn::IfThenElse(empty, infinite, hn::LoadU(d, depth)), d, depth);
+  std::uint32_t* const id = surface.id.row(y) + x;
+  hn::StoreU(hn::IfThenZeroElse(hn::RebindMask(du, empty), hn::LoadU(du, id)), du, id);
 }
 
 void LoadCellVector(const CorrectionInputs& in, const Place& place, ResidualCells& cells, int x,
                     int y) {
   const B d;
-  const Quad<MB> member = Members(in, place, {}, cells, x, y);
+  const Quad<MB> member = Confirmed(in, place, cells, x, y);
   VB count = hn::Zero(d), noise = hn::Zero(d);
   const auto variance = LoadQuad(d, in.variance, place);
   const auto samples = LoadQuad(d, in.samples, place);
@@ -182,31 +196,33 @@ void LoadCellVector(const CorrectionInputs& in, const Place& place, ResidualCell
   }
   hn::StoreU(hn::Mul(noise, hn::Mul(share, share)), d, cells.noise.row(y) + x);
   hn::StoreU(count, d, cells.count.row(y) + x);
-  // The filter knows by its depth that a cell has nothing to give.
-  VB depth, beside;
-  hn::LoadInterleaved2(d, in.guides.surface.depth.row(place.rows[0]) + place.column, depth, beside);
-  const VB infinite = hn::Set(d, std::numeric_limits<float>::infinity());
-  hn::StoreU(hn::IfThenElse(hn::Gt(count, hn::Zero(d)), depth, infinite), d,
-             cells.guides.surface.depth.row(y) + x);
+  DropEmpty(count, cells.guides.surface, x, y);
+}
+
+// Calls visit(place, x, y) for each vector of the cells of `tile`.
+template <typename Visit>
+void ForEachVector(const Tile& tile, Extent pixels, const Visit& visit) {
+  const B d;
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    const bool inside_y = 2 * y + 1 < pixels.height;
+    for (int x = tile.x0; x < tile.x1; x += static_cast<int>(hn::Lanes(d))) {
+      // Of the cells from x on, those with a right column in the image.
+      const auto whole = static_cast<std::size_t>(std::max(pixels.width / 2 - x, 0));
+      visit(Place{2 * x, {2 * y, inside_y ? 2 * y + 1 : 2 * y}, hn::FirstN(d, whole), inside_y}, x,
+            y);
+    }
+  }
+}
+
+void PlaceCells(const GBuffer& surface, const Tile& tile, ResidualCells& cells) {
+  ForEachVector(tile, surface.depth.extent(), [&](const Place& place, int x, int y) {
+    PlaceCellVector(surface, place, cells, x, y);
+  });
 }
 
 void LoadCells(const CorrectionInputs& in, const Tile& tile, ResidualCells& cells) {
-  const B d;
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  const Extent pixels = in.guides.extent();
-  for (int y = tile.y0; y < tile.y1; ++y) {
-    const bool inside_y = 2 * y + 1 < pixels.height;
-    for (int x = tile.x0; x < tile.x1; x += lanes) {
-      // Of the cells from x on, those with a right column in the image.
-      const int whole = std::max(pixels.width / 2 - x, 0);
-      LoadCellVector(in,
-                     {2 * x,
-                      {2 * y, inside_y ? 2 * y + 1 : 2 * y},
-                      hn::FirstN(d, static_cast<std::size_t>(whole)),
-                      inside_y},
-                     cells, x, y);
-    }
-  }
+  ForEachVector(tile, in.guides.extent(),
+                [&](const Place& place, int x, int y) { LoadCellVector(in, place, cells, x, y); });
 }
 
 }  // namespace
@@ -217,6 +233,7 @@ HWY_AFTER_NAMESPACE();
 namespace eigenlight {
 
 HWY_EXPORT(TestBlocks);
+HWY_EXPORT(PlaceCells);
 HWY_EXPORT(LoadCells);
 
 void test_blocks(const CorrectionInputs& in, const Tile& area, std::span<ResidualBlock> blocks) {
@@ -224,6 +241,12 @@ void test_blocks(const CorrectionInputs& in, const Tile& area, std::span<Residua
   EL_DCHECK(area.x0 % kResidualBlock == 0 && area.y0 % kResidualBlock == 0);
   const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(TestBlocks)(in, area, blocks);
+}
+
+void place_cells(const GBuffer& surface, const Tile& tile, ResidualCells& cells) {
+  EL_DCHECK(tile.x0 % kCellStep == 0);
+  const FloatTrapsOff lanes_behind_masks_may_hold_anything;
+  HWY_DYNAMIC_DISPATCH(PlaceCells)(surface, tile, cells);
 }
 
 void load_cells(const CorrectionInputs& in, const Tile& tile, ResidualCells& cells) {
@@ -235,7 +258,8 @@ void load_cells(const CorrectionInputs& in, const Tile& tile, ResidualCells& cel
 ResidualCells::ResidualCells(Extent pixels)
     : mean(make_planes<3>({(pixels.width + 1) / 2, (pixels.height + 1) / 2})),
       noise(mean[0].extent()),
-      count(mean[0].extent()) {
+      count(mean[0].extent()),
+      members(mean[0].extent()) {
   guides.surface.resize(mean[0].extent());
 }
 

@@ -57,7 +57,9 @@ struct Scene {
   }
   // Leaves the corrected prediction.
   double run(Correction& correction) {
-    correction.count(in(), {0, 0, innovation.width(), innovation.height(), 0});
+    const Tile all{0, 0, innovation.width(), innovation.height(), 0};
+    correction.place(guides.surface, all);
+    correction.count(in(), all);
     const double share = correction.process(in(), innovation);
     for (std::size_t c = 0; c < 3; ++c) {
       for (int y = 0; y < prediction[c].height(); ++y) {

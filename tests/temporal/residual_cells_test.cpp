@@ -47,7 +47,10 @@ struct Scene {
   }
   void load() {
     const TileGrid grid = stage_tiles(cells.extent());
-    for (int i = 0; i < grid.count(); ++i) load_cells(in(), grid.tile(i), cells);
+    for (int i = 0; i < grid.count(); ++i) {
+      place_cells(guides.surface, grid.tile(i), cells);
+      load_cells(in(), grid.tile(i), cells);
+    }
   }
   void spread() {
     const TileGrid grid(guides.extent(), 32, 32);
