@@ -53,6 +53,10 @@ void AtrousOptions::validate() const {
   EL_CHECK(radius == 1 || radius == 2, "radius {}: expected 1 or 2", radius);
   EL_CHECK(luminance_sigmas > 0.0f && (luminance_sigmas <= 100.0f || !looks_at_light()),
            "luminance_sigmas {}: expected (0, 100] or inf", luminance_sigmas);
+  EL_CHECK(earlier_sigmas > 0.0f && earlier_sigmas <= 100.0f,
+           "earlier_sigmas {}: expected (0, 100]", earlier_sigmas);
+  EL_CHECK(earlier_share >= 0.0f && earlier_share <= 1.0f, "earlier_share {}: expected [0, 1]",
+           earlier_share);
   EL_CHECK(plane_distance > 0.0f && plane_distance <= 1.0f,
            "plane_distance {}: expected (0, 1] of the depth", plane_distance);
 }
@@ -66,10 +70,11 @@ Atrous::Atrous(Extent extent, const AtrousOptions& options)
       noisy_(static_cast<std::size_t>(grid_.count())),
       skipped_(noisy_.size()) {}
 
-void Atrous::check(const Frame& guides, const Planes<3>& color,
-                   const Plane<float>& variance) const {
+void Atrous::check(const Frame& guides, const Planes<3>& color, const Plane<float>& variance,
+                   const Plane<float>* earlier) const {
   const Extent extent = grid_.extent();
-  EL_CHECK(guides.extent() == extent && color[0].extent() == extent && variance.extent() == extent,
+  EL_CHECK(guides.extent() == extent && color[0].extent() == extent &&
+               variance.extent() == extent && (earlier == nullptr || earlier->extent() == extent),
            "a-trous filter made for {}x{}: got planes of another size", extent.width,
            extent.height);
 }
@@ -83,9 +88,9 @@ void Atrous::find_planes(const Frame& guides, std::span<const std::uint8_t> want
 }
 
 void Atrous::run_pass(const Frame& guides, int pass, std::span<const std::uint8_t> wanted,
-                      Planes<3>& color, Plane<float>& variance) {
-  const AtrousPass work{guides, options_, planar_,        1 << pass,
-                        color,  variance, scratch_color_, scratch_variance_};
+                      Planes<3>& color, Plane<float>& variance, const Plane<float>* earlier) {
+  const AtrousPass work{guides,   options_, planar_,        1 << pass,        color,
+                        variance, earlier,  scratch_color_, scratch_variance_};
   const auto is_wanted = [&](const Tile& tile) {
     return wanted[static_cast<std::size_t>(tile.index)] != 0;
   };
@@ -111,8 +116,8 @@ void Atrous::run_pass(const Frame& guides, int pass, std::span<const std::uint8_
 }
 
 std::int64_t Atrous::process(const Frame& guides, float quiet, Planes<3>& color,
-                             Plane<float>& variance) {
-  check(guides, color, variance);
+                             Plane<float>& variance, const Plane<float>* earlier) {
+  check(guides, color, variance, earlier);
   for_each_tile(grid_, [&](const Tile& tile) {
     const auto index = static_cast<std::size_t>(tile.index);
     const std::int64_t surface = surface_pixels(guides, tile);
@@ -121,25 +126,25 @@ std::int64_t Atrous::process(const Frame& guides, float quiet, Planes<3>& color,
     skipped_[index] = noisy ? 0 : surface;
   });
   find_planes(guides, noisy_);
-  run_pass(guides, 0, noisy_, color, variance);
+  run_pass(guides, 0, noisy_, color, variance, earlier);
   for (int pass = 1; pass < options_.passes; ++pass) {
     for_each_tile(grid_, [&](const Tile& tile) {
       std::uint8_t& noisy = noisy_[static_cast<std::size_t>(tile.index)];
       if (noisy != 0 && is_quiet(color, variance, quiet, tile)) noisy = 0;
     });
-    run_pass(guides, pass, noisy_, color, variance);
+    run_pass(guides, pass, noisy_, color, variance, earlier);
   }
   return std::accumulate(skipped_.begin(), skipped_.end(), std::int64_t{0});
 }
 
 void Atrous::process(const Frame& guides, std::span<const std::uint8_t> wanted, Planes<3>& color,
                      Plane<float>& variance) {
-  check(guides, color, variance);
+  check(guides, color, variance, nullptr);
   EL_CHECK(wanted.size() == static_cast<std::size_t>(grid_.count()), "{} wanted flags for {} tiles",
            wanted.size(), grid_.count());
   find_planes(guides, wanted);
   for (int pass = 0; pass < options_.passes; ++pass) {
-    run_pass(guides, pass, wanted, color, variance);
+    run_pass(guides, pass, wanted, color, variance, nullptr);
   }
 }
 

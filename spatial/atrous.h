@@ -18,6 +18,9 @@ struct AtrousOptions {
   /// (0, 100] standard deviations of luminance that still count as the same light; +inf: light does
   /// not count, only geometry.
   float luminance_sigmas = 3.0f;
+  /// Where an earlier picture is given, how far its luminance at a neighbor may be off that at the
+  /// pixel: (0, 100] standard deviations of this picture, plus a share in [0, 1] of it.
+  float earlier_sigmas = 2.0f, earlier_share = 0.1f;
   /// (0, 1] of the depth: distance off the pixel's plane that weighs a neighbor by 1/e.
   float plane_distance = 0.02f;
   bool skip_planar = true;  ///< no weights of geometry where all taps lie in one plane
@@ -30,11 +33,15 @@ struct AtrousOptions {
 ///   out(p) = sum_q h(q) w(p, q) c(q) / sum_q h(q) w(p, q),  h the 5 x 5 B3-spline (or 3 x 3
 ///   binomial) with holes,
 ///   w = max(0, N_p . N_q)^64 * e(|N_p . (X_q - X_p)| / (plane_distance * depth_p))
-///                            * e(|l_q - l_p| / (luminance_sigmas * sigma_p + 1e-4 l_p))
+///                            * e(|l_q - l_p| / (luminance_sigmas * sigma_p + 1e-4 |l_p|)
+///                              + |h_q - h_p| / (earlier_sigmas * sigma_p + earlier_share |h_p|))
 /// where sigma_p^2 is the variance of luminance around p (3 x 3 Gaussian) and e(x) = (1 - x/8)^8,
-/// close to exp(-x), ends at x = 8. Variances follow: var(p) = sum (h w)^2 var(q) / (sum h w)^2.
-/// Pixels without surface neither give nor take; they keep their value. Nor do pixels whose normals
-/// have a product above kLargestCosine, or that have no depth, take from each other.
+/// close to exp(-x), ends at x = 8. h is the luminance of an earlier picture, already filtered,
+/// brought to this one's pixels: it knows, with less noise, where light changes from one pixel to
+/// the next, and is read for nothing else. Without one its term is 0, as it is where either h is
+/// NaN: not known. Variances follow: var(p) = sum (h w)^2 var(q) / (sum h w)^2. Pixels without
+/// surface neither give nor take; they keep their value. Nor do pixels whose normals have a product
+/// above kLargestCosine, or that have no depth, take from each other.
 ///
 /// In blocks whose taps all lie in one plane (planar_blocks.h, with a thousandth of plane_distance)
 /// weights of geometry are taken to be 1 and not calculated: none is off by more than 0.5 %.
@@ -46,10 +53,13 @@ class Atrous {
  public:
   Atrous(Extent extent, const AtrousOptions& options);
 
-  /// Returns the number of surface pixels that were skipped in the first pass.
-  std::int64_t process(const Frame& guides, float quiet, Planes<3>& color, Plane<float>& variance);
+  /// Returns the number of surface pixels that were skipped in the first pass. `earlier`: h, or
+  /// null.
+  std::int64_t process(const Frame& guides, float quiet, Planes<3>& color, Plane<float>& variance,
+                       const Plane<float>* earlier = nullptr);
 
-  /// The same for the tiles of stage_tiles() with wanted(tile index) != 0; the others are copied.
+  /// The same, without an earlier picture, for the tiles of stage_tiles() with wanted(tile index)
+  /// != 0; the others are copied.
   void process(const Frame& guides, std::span<const std::uint8_t> wanted, Planes<3>& color,
                Plane<float>& variance);
 
@@ -57,10 +67,11 @@ class Atrous {
   [[nodiscard]] std::int64_t planar_pixels() const { return planar_.pixels(); }
 
  private:
-  void check(const Frame& guides, const Planes<3>& color, const Plane<float>& variance) const;
+  void check(const Frame& guides, const Planes<3>& color, const Plane<float>& variance,
+             const Plane<float>* earlier) const;
   void find_planes(const Frame& guides, std::span<const std::uint8_t> wanted);
   void run_pass(const Frame& guides, int pass, std::span<const std::uint8_t> wanted,
-                Planes<3>& color, Plane<float>& variance);
+                Planes<3>& color, Plane<float>& variance, const Plane<float>* earlier);
 
   AtrousOptions options_;
   TileGrid grid_;

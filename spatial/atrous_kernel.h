@@ -12,6 +12,7 @@ struct AtrousPass {
   int step;  ///< pixels between taps
   const Planes<3>& color;
   const Plane<float>& variance;
+  const Plane<float>* earlier;  ///< null: none
   Planes<3>& out_color;
   Plane<float>& out_variance;
 };

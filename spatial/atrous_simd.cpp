@@ -35,10 +35,14 @@ VF Luminance(VF r, VF g, VF b) {
                     hn::MulAdd(hn::Set(d, 0.7152f), g, hn::Mul(hn::Set(d, 0.0722f), b)));
 }
 
+// Whose light weighs a tap.
+enum class LightOf { kNone, kOwn, kOwnAndEarlier };
+
 // What weighs a tap.
-template <bool kGeometryWeighs, bool kLightWeighs>
+template <bool kGeometryWeighs, LightOf kLightOf>
 struct Weighing {
-  static constexpr bool kGeometry = kGeometryWeighs, kLight = kLightWeighs;
+  static constexpr bool kGeometry = kGeometryWeighs, kLight = kLightOf != LightOf::kNone;
+  static constexpr bool kEarlier = kLightOf == LightOf::kOwnAndEarlier;
 };
 
 // The planes that a vector of output pixels lies in.
@@ -78,19 +82,38 @@ HWY_INLINE Tangents LoadTangents(const AtrousPass& pass, int x, int y) {
 
 // The light of the output pixels.
 struct Light {
-  VF luminance;
-  VF scale;  // 1 / (8 (sigmas sigma + 1e-4 luminance))
+  VF luminance, earlier;
+  // An eighth over what is tolerated of them.
+  VF scale, earlier_scale;
 };
 
+// 1 / (8 (sigmas sigma + share |luminance|))
+HWY_INLINE VF LightScale(float sigmas, VF sigma, float share, VF luminance) {
+  const F d;
+  const VF tolerance =
+      hn::MulAdd(hn::Set(d, sigmas), sigma, hn::Mul(hn::Set(d, share), hn::Abs(luminance)));
+  // 1e-20 only keeps black on black from dividing by zero.
+  return hn::Div(hn::Set(d, 0.125f), hn::Add(tolerance, hn::Set(d, 1e-20f)));
+}
+
+// What is not known does not count.
+HWY_INLINE VF KnownOrZero(VF v) { return hn::IfThenZeroElse(hn::IsNaN(v), v); }
+
+template <typename By>
 HWY_INLINE Light LoadLight(const AtrousPass& pass, int x, int y, VF smooth_variance) {
   const F d;
   const auto load = [&](std::size_t c) { return hn::LoadU(d, pass.color[c].row(y) + x); };
-  const VF luminance = Luminance(load(0), load(1), load(2));
-  const VF tolerance =
-      hn::MulAdd(hn::Set(d, pass.options.luminance_sigmas), hn::Sqrt(smooth_variance),
-                 hn::Mul(hn::Set(d, 1e-4f), hn::Abs(luminance)));
-  // 1e-20 only keeps black on black from dividing by zero.
-  return {luminance, hn::Div(hn::Set(d, 0.125f), hn::Add(tolerance, hn::Set(d, 1e-20f)))};
+  const AtrousOptions& options = pass.options;
+  const VF sigma = hn::Sqrt(smooth_variance);
+  Light light;
+  light.luminance = Luminance(load(0), load(1), load(2));
+  light.scale = LightScale(options.luminance_sigmas, sigma, 1e-4f, light.luminance);
+  if constexpr (By::kEarlier) {
+    light.earlier = hn::LoadU(d, pass.earlier->row(y) + x);
+    light.earlier_scale = KnownOrZero(
+        LightScale(options.earlier_sigmas, sigma, options.earlier_share, light.earlier));
+  }
+  return light;
 }
 
 // What the output pixels have gathered.
@@ -112,7 +135,7 @@ HWY_INLINE Sums LoadCenter(const AtrousPass& pass, int x, int y) {
 
 // The planes of one row of taps.
 struct TapRow {
-  const float *color[3], *variance, *normal[3], *depth;
+  const float *color[3], *variance, *normal[3], *depth, *earlier;
   int line, dy;     // which row of the image, and of the kernel
   float kernel[5];  // h of its taps
 
@@ -123,6 +146,7 @@ struct TapRow {
         normal{pass.guides.surface.normal[0].row(y), pass.guides.surface.normal[1].row(y),
                pass.guides.surface.normal[2].row(y)},
         depth(pass.guides.surface.depth.row(y)),
+        earlier(pass.earlier != nullptr ? pass.earlier->row(y) : nullptr),
         line(y),
         dy(place) {
     const int radius = pass.options.radius;
@@ -228,7 +252,11 @@ HWY_INLINE void AddTap(const TapRow& row, const Taps& taps, int j, VF root, VF k
                        taps.Load(row.color[2], j)};
   if constexpr (By::kLight) {
     const VF off = hn::Abs(hn::Sub(Luminance(color[0], color[1], color[2]), at.luminance));
-    const VF decay = hn::NegMulAdd(off, at.scale, hn::Set(d, 1.0f));
+    VF decay = hn::NegMulAdd(off, at.scale, hn::Set(d, 1.0f));
+    if constexpr (By::kEarlier) {
+      const VF earlier_off = hn::Abs(hn::Sub(taps.Load(row.earlier, j), at.earlier));
+      decay = hn::NegMulAdd(KnownOrZero(earlier_off), at.earlier_scale, decay);
+    }
     const VF kept = hn::IfThenElseZero(hn::Gt(decay, hn::Zero(d)), decay);
     root = By::kGeometry ? hn::Mul(root, kept) : kept;
   }
@@ -290,7 +318,7 @@ HWY_INLINE void FilterVector(const AtrousPass& pass, std::span<const TapRow> row
     }
   }
   Light light;
-  if constexpr (By::kLight) light = LoadLight(pass, taps.x, y, smooth_variance);
+  if constexpr (By::kLight) light = LoadLight<By>(pass, taps.x, y, smooth_variance);
   Sums sums = LoadCenter(pass, taps.x, y);
   for (std::size_t r = 0; r < rows.size(); ++r) {
     for (int j = -kRadius; j <= kRadius; ++j) {
@@ -302,10 +330,10 @@ HWY_INLINE void FilterVector(const AtrousPass& pass, std::span<const TapRow> row
   StoreCenter(pass, sums, taps.x, y);
 }
 
-template <int kRadius, bool kLight>
+template <int kRadius, LightOf kLightOf>
 void FilterTile(const AtrousPass& pass, const Tile& tile) {
-  using Full = Weighing<true, kLight>;
-  using Planar = Weighing<false, kLight>;
+  using Full = Weighing<true, kLightOf>;
+  using Planar = Weighing<false, kLightOf>;
   const F d;
   const int lanes = static_cast<int>(hn::Lanes(d)), reach = kRadius * pass.step;
   constexpr int kSide = PlanarBlocks::kSide;
@@ -317,7 +345,7 @@ void FilterTile(const AtrousPass& pass, const Tile& tile) {
                                        static_cast<std::size_t>(FindRows<kRadius>(pass, y, found)));
     const std::uint8_t* margins = pass.planar.margins(y / kSide);
     for (int x = tile.x0; x < tile.x1; x += lanes) {
-      const VF variance = kLight ? SmoothVariance(pass.variance, x, y) : hn::Zero(d);
+      const VF variance = Full::kLight ? SmoothVariance(pass.variance, x, y) : hn::Zero(d);
       const int last = std::min(x + lanes, extent.width) - 1;
       if (x - reach < 0 || x + lanes + reach > extent.width) {
         FilterVector<kRadius, Full>(pass, rows, EdgeTaps{x, pass.step, extent.width - 1}, y,
@@ -331,12 +359,19 @@ void FilterTile(const AtrousPass& pass, const Tile& tile) {
   }
 }
 
+template <LightOf kLightOf>
+void FilterTile(const AtrousPass& pass, const Tile& tile) {
+  pass.options.radius == 1 ? FilterTile<1, kLightOf>(pass, tile)
+                           : FilterTile<2, kLightOf>(pass, tile);
+}
+
 void AtrousTile(const AtrousPass& pass, const Tile& tile) {
-  const bool light = pass.options.looks_at_light();
-  if (pass.options.radius == 1) {
-    light ? FilterTile<1, true>(pass, tile) : FilterTile<1, false>(pass, tile);
+  if (!pass.options.looks_at_light()) {
+    FilterTile<LightOf::kNone>(pass, tile);
+  } else if (pass.earlier == nullptr) {
+    FilterTile<LightOf::kOwn>(pass, tile);
   } else {
-    light ? FilterTile<2, true>(pass, tile) : FilterTile<2, false>(pass, tile);
+    FilterTile<LightOf::kOwnAndEarlier>(pass, tile);
   }
 }
 

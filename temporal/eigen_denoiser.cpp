@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
+#include "frame/luminance.h"
 #include "frame/strips.h"
 #include "reproject/warp.h"
 #include "temporal/edges.h"
@@ -17,7 +19,7 @@ namespace eigenlight {
 namespace {
 
 // Changes when the saved bytes do.
-constexpr int kStateVersion = 4;
+constexpr int kStateVersion = 5;
 
 void expect_bases(int found, int wanted) {
   if (found == wanted) return;
@@ -27,6 +29,8 @@ void expect_bases(int found, int wanted) {
 
 // Longest age at edges, over that of the pixels around, where light changes.
 constexpr float kEdgeShare = 2.0f / 3.0f;
+
+constexpr float kNotShown = std::numeric_limits<float>::quiet_NaN();
 
 }  // namespace
 
@@ -56,6 +60,8 @@ EigenDenoiser::EigenDenoiser(const DenoiserOptions& options, const EigenOptions&
       warped_bases_(extent_, 1),
       variance_(extent_),
       warped_variance_(extent_),
+      shown_(extent_),
+      earlier_(extent_),
       memory_(extent_, options.bases),
       budget_(extent_, parts.budget),
       fireflies_(extent_, parts.fireflies),
@@ -156,6 +162,7 @@ void EigenDenoiser::warp_history() {
   if (!moving) {
     std::swap(bases_, warped_bases_);
     std::swap(variance_, warped_variance_);
+    std::swap(shown_, earlier_);
   }
   const SumInputs history{warped_bases_, frame_, warped_variance_, memory_.active()};
   for_each_strip(tiles_, [&](const Strip& strip) {
@@ -185,6 +192,7 @@ void EigenDenoiser::warp_row(const Tile& row) {
   if (has_edges_) find_edges(frame_, options_.taps, row, edge_);
   warp_bases(bases_, taps, row, warped_bases_);
   warp_plane(variance_, taps, row, warped_variance_);
+  if (options_.look_back) warp_plane(shown_, taps, row, earlier_);
 }
 
 bool EigenDenoiser::resample(FrameSource& source, std::int64_t planned) {
@@ -325,10 +333,26 @@ void EigenDenoiser::clear_tile(const Tile& tile) {
 
 void EigenDenoiser::filter() {
   fill_young();
+  if (options_.look_back) fill_earlier();
   report_.skipped_filter = options_.filter
-                               ? atrous_.process(frame_, options_.quiet, output_, output_variance_)
+                               ? atrous_.process(frame_, options_.quiet, output_, output_variance_,
+                                                 options_.look_back ? &earlier_ : nullptr)
                                : report_.surface_pixels;
   report_.skipped_geometry = options_.filter ? atrous_.planar_pixels() : 0;
+  if (!options_.look_back) return;
+  for_each_segment(tiles_, [&](const Tile& row) {
+    for (int x = row.x0; x < row.x1; ++x) shown_(x, row.y0) = luminance(output_, x, row.y0);
+  });
+}
+
+// New pixels have not been shown.
+void EigenDenoiser::fill_earlier() {
+  for_each_segment(tiles_, [&](const Tile& row) {
+    if (counts_[static_cast<std::size_t>(row.index)].fresh == 0) return;
+    for (int x = row.x0; x < row.x1; ++x) {
+      if (old_age_(x, row.y0) == 0.0f) earlier_(x, row.y0) = kNotShown;
+    }
+  });
 }
 
 // Young pixels lean on what their surroundings say of such a surface (Bauszat 2011). The share that
@@ -359,6 +383,7 @@ void EigenDenoiser::save(StateWriter& out) const {
   out.value("bases in use", bases_.bases());
   bases_.save(out);
   out.plane("variance", variance_);
+  out.plane("shown light", shown_);
   memory_.save(out);
 }
 
@@ -374,6 +399,7 @@ void EigenDenoiser::load(StateReader& in) {
   bases_.reshape(bases);
   bases_.load(in);
   in.plane("variance", variance_);
+  in.plane("shown light", shown_);
   memory_.load(in);
 }
 

@@ -25,7 +25,7 @@ struct EigenOptions {
   InnovationOptions innovation;
   BudgetOptions budget;
   GuidedOptions guided;
-  AtrousOptions atrous{.passes = 4, .radius = 1, .luminance_sigmas = 5.0f};
+  AtrousOptions atrous{.passes = 4, .radius = 1, .luminance_sigmas = 7.0f};
   /// [0, 255] frames: younger pixels take the guided filter's value the more, the younger they are.
   float young = 2.0f;
   /// [1, 255] frames: the longest age where light changes in ways that no basis knows. A filter
@@ -42,6 +42,7 @@ struct EigenOptions {
   bool project = true;     ///< solve for coefficients; else the light is taken to be steady
   bool correct = true;     ///< add the smoothed innovation
   bool filter = true;      ///< a-trous passes over the output
+  bool look_back = true;   ///< they tell edges of light by the last output as well
   bool skip_still = true;  ///< no taps for frames in which nothing moves
   bool skip_empty = true;  ///< no work in tiles without surface
 
@@ -88,6 +89,7 @@ class EigenDenoiser final : public Denoiser {
   void clear_tile(const Tile& tile);
   void filter();
   void fill_young();
+  void fill_earlier();
 
   struct TileCount {
     std::int64_t surface = 0, fresh = 0, non_finite = 0, unguided = 0;
@@ -105,6 +107,7 @@ class EigenDenoiser final : public Denoiser {
   SurfaceHistory surfaces_;
   BasisField bases_, warped_bases_;
   Plane<float> variance_, warped_variance_;  // of one frame's luminance
+  Plane<float> shown_, earlier_;             // luminance of the last output, and brought here
   LightMemory memory_;
 
   // Scratch, and what the last frame left for the caller.

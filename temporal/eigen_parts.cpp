@@ -30,6 +30,11 @@ constexpr std::array kSwitches{
            [](EigenOptions& options, int&) { options.young = 0.0f; }},
     Switch{{"atrous", "no a-trous passes over the output"},
            [](EigenOptions& options, int&) { options.filter = false; }},
+    Switch{{"look-back", "a-trous passes tell edges of light by this frame alone"},
+           [](EigenOptions& options, int&) {
+             options.look_back = false;
+             options.atrous.luminance_sigmas = 5.0f;
+           }},
     Switch{{"skip-still", "taps and warp also where nothing moves"},
            [](EigenOptions& options, int&) { options.skip_still = false; }},
     Switch{{"skip-empty", "all work also in tiles without surface"},

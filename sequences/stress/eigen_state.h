@@ -26,6 +26,7 @@ struct EigenState {
     field = BasisField(surfaces.previous().surface.depth.extent(), used);
     field.load(in);
     in.plane("variance", variance);
+    in.plane("shown light", shown);
     memory.load(in);
   }
 
@@ -37,6 +38,7 @@ struct EigenState {
     out.value("bases in use", field.bases());
     field.save(out);
     out.plane("variance", variance);
+    out.plane("shown light", shown);
     memory.save(out);
     StateReader in({out.bytes().data(), out.bytes().size()});
     denoiser.load(in);
@@ -45,7 +47,7 @@ struct EigenState {
   int version = 0;
   SurfaceHistory surfaces;
   BasisField field;
-  Plane<float> variance;
+  Plane<float> variance, shown;
   LightMemory memory;
 };
 

@@ -67,9 +67,13 @@ inline double smooth_sigma(const AtrousImage& image, glm::ivec2 p) {
 
 }  // namespace detail
 
+/// Luminances h of an earlier picture, by AtrousImage::index; NaN: not known; empty: none.
+using Earlier = std::vector<double>;
+
 /// w(p, q) of the header.
 inline double atrous_weight(const Frame& guides, const AtrousOptions& options,
-                            const AtrousImage& image, glm::ivec2 p, glm::ivec2 q) {
+                            const AtrousImage& image, const Earlier& earlier, glm::ivec2 p,
+                            glm::ivec2 q) {
   if (p == q) return 1.0;
   if (guides.surface.id(q.x, q.y) == 0) return 0.0;
   const glm::dvec3 normal = detail::guide_normal(guides, p);
@@ -82,15 +86,23 @@ inline double atrous_weight(const Frame& guides, const AtrousOptions& options,
   const auto decay = [](double x) { return std::pow(std::max(0.0, 1.0 - x / 8.0), 8); };
   const double geometry = std::pow(cosine, 64) * decay(plane / (options.plane_distance * depth));
   if (std::isinf(options.luminance_sigmas)) return geometry;
+  const double sigma = detail::smooth_sigma(image, p);
+  const auto off = [](double own, double other, double tolerance) {
+    return own == other || std::isnan(other - own) ? 0.0 : std::abs(other - own) / tolerance;
+  };
   const double own = image.luminance(p.x, p.y);
-  const double tolerance =
-      options.luminance_sigmas * detail::smooth_sigma(image, p) + 1e-4 * std::abs(own);
-  const double light = std::abs(image.luminance(q.x, q.y) - own);
-  return geometry * (light > 0.0 ? decay(light / tolerance) : 1.0);
+  double light =
+      off(own, image.luminance(q.x, q.y), options.luminance_sigmas * sigma + 1e-4 * std::abs(own));
+  if (!earlier.empty()) {
+    const double before = earlier[image.index(p.x, p.y)];
+    light += off(before, earlier[image.index(q.x, q.y)],
+                 options.earlier_sigmas * sigma + options.earlier_share * std::abs(before));
+  }
+  return geometry * decay(light);
 }
 
 inline AtrousImage atrous_pass(const Frame& guides, const AtrousOptions& options,
-                               const AtrousImage& image, int step) {
+                               const AtrousImage& image, int step, const Earlier& earlier = {}) {
   const std::array<double, 5> kernel =
       options.radius == 2 ? std::array{1 / 16.0, 1 / 4.0, 3 / 8.0, 1 / 4.0, 1 / 16.0}
                           : std::array{0.0, 1 / 4.0, 1 / 2.0, 1 / 4.0, 0.0};
@@ -106,7 +118,7 @@ inline AtrousImage atrous_pass(const Frame& guides, const AtrousOptions& options
           if (!image.extent.contains(q.x, q.y)) continue;
           const double w = kernel[static_cast<std::size_t>(i)] *
                            kernel[static_cast<std::size_t>(j)] *
-                           atrous_weight(guides, options, image, {x, y}, q);
+                           atrous_weight(guides, options, image, earlier, {x, y}, q);
           const std::size_t at = image.index(q.x, q.y);
           weights += w;
           for (std::size_t c = 0; c < 3; ++c) sum[c] += w * image.values[c][at];

@@ -19,8 +19,10 @@ struct Scene {
   explicit Scene(Extent extent, bool sky = true)
       : guides(make_random_frame({.extent = extent, .sky = sky, .non_finite = false}, 2)),
         color(make_planes<3>(extent)),
-        variance(random_plane(extent, 5, 0.01f, 0.3f)) {
+        variance(random_plane(extent, 5, 0.01f, 0.3f)),
+        earlier(random_plane(extent, 6, 0.3f, 1.5f)) {
     copy_planes(guides.indirect, color);
+    forget_some();
   }
   // One wall, seen straight.
   static Scene wall(Extent extent) {
@@ -37,6 +39,25 @@ struct Scene {
     Atrous atrous(variance.extent(), options);
     return atrous.process(guides, quiet, color, variance);
   }
+  // The earlier picture is not known of one pixel in thirteen.
+  void forget_some() {
+    for (int y = 0; y < earlier.height(); ++y) {
+      for (int x = 0; x < earlier.width(); ++x) {
+        if ((x + 5 * y) % 13 == 0) earlier(x, y) = std::numeric_limits<float>::quiet_NaN();
+      }
+    }
+  }
+  void run_with_earlier(const AtrousOptions& options = {}) {
+    Atrous atrous(variance.extent(), options);
+    atrous.process(guides, 0.0f, color, variance, &earlier);
+  }
+  [[nodiscard]] reference::Earlier earlier_values() const {
+    reference::Earlier values;
+    for (int y = 0; y < earlier.height(); ++y) {
+      values.insert(values.end(), earlier.row(y), earlier.row(y) + earlier.width());
+    }
+    return values;
+  }
   // Fills color: `left` of the middle column, and right of it.
   void set_halves(float left, float right) {
     for (auto& plane : color) {
@@ -49,7 +70,7 @@ struct Scene {
   }
   Frame guides;
   Planes<3> color;
-  Plane<float> variance;
+  Plane<float> variance, earlier;
 };
 
 // Passes that need a margin of one block, and of two; with and without light.
@@ -58,15 +79,16 @@ const std::vector<AtrousOptions> kPlanarCases{
     {.passes = 4, .radius = 2, .luminance_sigmas = 2.0f},
     {.passes = 6, .radius = 1, .luminance_sigmas = std::numeric_limits<float>::infinity()}};
 
-void expect_agreement(Extent extent, const AtrousOptions& options) {
+void expect_agreement(Extent extent, const AtrousOptions& options, bool looks_back) {
   const Scene before(extent);
   reference::AtrousImage twin(before.color, before.variance);
   for (int i = 0; i < options.passes; ++i) {
-    twin = reference::atrous_pass(before.guides, options, twin, 1 << i);
+    twin = reference::atrous_pass(before.guides, options, twin, 1 << i,
+                                  looks_back ? before.earlier_values() : reference::Earlier());
   }
   for_each_target([&] {
     Scene after(extent);
-    after.run(options);
+    looks_back ? after.run_with_earlier(options) : (void)after.run(options);
     for (int y = 0; y < extent.height; ++y) {
       for (int x = 0; x < extent.width; ++x) {
         const std::size_t at = twin.index(x, y);
@@ -83,8 +105,10 @@ void expect_agreement(Extent extent, const AtrousOptions& options) {
 
 TEST(Atrous, AgreesWithTheTwinOnEveryTarget) {
   for (const Extent extent : kSweepExtents) {
-    expect_agreement(extent, {.passes = 3});
-    expect_agreement(extent, {.passes = 3, .radius = 1});
+    for (const bool looks_back : {false, true}) {
+      expect_agreement(extent, {.passes = 3}, looks_back);
+      expect_agreement(extent, {.passes = 3, .radius = 1}, looks_back);
+    }
   }
 }
 
@@ -229,6 +253,19 @@ TEST_F(AtrousEdge, OfLuminanceHolds) {
   expect_kept();
 }
 
+TEST_F(AtrousEdge, OfAnEarlierPictureHolds) {
+  scene_.variance.fill(0.5f);  // 3 sigma: 2.1, of own light alone it would be blurred
+  scene_.run();
+  EXPECT_GT(scene_.color[0](31, 8), 1.1f);
+  scene_.set_halves(1.0f, 3.0f);
+  for (int y = 0; y < 16; ++y) {
+    for (int x = 0; x < 64; ++x) scene_.earlier(x, y) = x < 32 ? 1.0f : 30.0f;
+  }
+  scene_.variance.fill(0.5f);
+  scene_.run_with_earlier();
+  expect_kept();
+}
+
 TEST_F(AtrousEdge, OfSkyHoldsAndSkyKeepsItsValue) {
   for_right_half([&](int x, int y) {
     scene_.guides.surface.id(x, y) = 0;
@@ -306,6 +343,12 @@ TEST(Atrous, RefusesOtherExtentsAndBadOptions) {
   EXPECT_THROW(Atrous({8, 8}, {.radius = 3}), std::invalid_argument);
   EXPECT_THROW(Atrous({8, 8}, {.luminance_sigmas = 0.0f}), std::invalid_argument);
   EXPECT_THROW(Atrous({8, 8}, {.plane_distance = 1.5f}), std::invalid_argument);
+  EXPECT_THROW(Atrous({8, 8}, {.earlier_sigmas = 0.0f}), std::invalid_argument);
+  EXPECT_THROW(Atrous({8, 8}, {.earlier_share = 1.5f}), std::invalid_argument);
+  Atrous same({64, 16}, {});
+  const Plane<float> earlier({64, 17});
+  EXPECT_THROW((void)same.process(scene.guides, 0.0f, scene.color, scene.variance, &earlier),
+               std::invalid_argument);
   EXPECT_THROW(Atrous({0, 8}, {}), std::invalid_argument);
 }
 

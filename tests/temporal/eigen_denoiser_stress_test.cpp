@@ -127,9 +127,9 @@ TEST(EigenDenoiserStress, FramesWithoutAnyUsablePixelAreSurvived) {
   EXPECT_EQ(hit.reports[6].non_finite_pixels, 65 * 17);
   EXPECT_EQ(hit.frames[0][1](30, 8), 0.0f);
   for (const auto& frame : hit.frames) EXPECT_TRUE(all_finite(frame));
-  // Frame 6 shows what frame 5 knew, and frame 1 starts.
+  // Frame 6 shows what frame 5 knew, filtered by another earlier picture, and frame 1 starts.
   EXPECT_EQ(hit.reports[1].new_pixels, 65 * 17);
-  EXPECT_LT(largest_ratio(hit.frames[6], hit.frames[5], {30, 8}, 8), 0.02f);
+  EXPECT_LT(largest_ratio(hit.frames[6], hit.frames[5], {30, 8}, 8), 0.05f);
 }
 
 // A normal of length 1e30 or a negative depth once made NaN of the pixels around, and a normal of

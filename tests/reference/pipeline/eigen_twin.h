@@ -33,7 +33,8 @@ class EigenTwin {
         learning_(coefficients_),
         r_(extent),
         new_age_(extent),
-        picture_(extent) {}
+        picture_(extent),
+        earlier_(extent) {}
 
   /// Red, green, blue (and variance) of the picture.
   const reference::AtrousImage& step(const Given& in) {
@@ -60,6 +61,7 @@ class EigenTwin {
  private:
   void warp(const Given& in) {
     const Extent extent = bases_.age.extent;
+    earlier_.each([&](int x, int y) { earlier_(x, y) = picture_.luminance(x, y); });
     if (in.cut) {
       bases_ = Bases(extent);
       r_.variance = Image(extent);
@@ -72,7 +74,7 @@ class EigenTwin {
 
   void move(const Frame& frame) {
     Bases moved(bases_.age.extent);
-    Image variance(bases_.age.extent);
+    Image variance(bases_.age.extent), earlier(bases_.age.extent);
     TapSegment taps;
     bases_.age.each([&](int x, int y) {  // row by row, from left to right
       const auto at = static_cast<std::size_t>(x % kSegment);
@@ -90,8 +92,10 @@ class EigenTwin {
         }
         moved.age(x, y) += w * bases_.age(i, j);
         variance(x, y) += w * r_.variance(i, j);
+        earlier(x, y) += w * earlier_(i, j);
       }
     });
+    earlier_ = std::move(earlier);
     bases_ = std::move(moved);
     r_.variance = std::move(variance);
   }
@@ -265,9 +269,12 @@ class EigenTwin {
     const Planes<3> guided =
         reference::guided_filter({frame, signal, weight, young}, options_.guided);
     young_pixels(frame, young, guided);
+    earlier_.each([&](int x, int y) {
+      if (!(r_.age(x, y) > 0.0)) earlier_(x, y) = std::numeric_limits<double>::quiet_NaN();
+    });
     for (int pass = 0; pass < options_.atrous.passes; ++pass) {
       const reference::AtrousImage before = picture_;
-      picture_ = reference::atrous_pass(frame, options_.atrous, before, 1 << pass);
+      picture_ = reference::atrous_pass(frame, options_.atrous, before, 1 << pass, earlier_.values);
       keep_quiet_tiles(before);
     }
   }
@@ -313,6 +320,7 @@ class EigenTwin {
   Residual r_;
   Image new_age_;
   reference::AtrousImage picture_;
+  Image earlier_;  // luminance of the last picture, brought here
 };
 
 }  // namespace eigenlight::twin
