@@ -20,7 +20,7 @@ struct AtrousOptions {
   float luminance_sigmas = 3.0f;
   /// Where an earlier picture is given, how far its luminance at a neighbor may be off that at the
   /// pixel: (0, 100] standard deviations of this picture, plus a share in [0, 1] of it.
-  float earlier_sigmas = 2.0f, earlier_share = 0.1f;
+  float earlier_sigmas = 1.5f, earlier_share = 0.1f;
   /// (0, 1] of the depth: distance off the pixel's plane that weighs a neighbor by 1/e.
   float plane_distance = 0.02f;
   bool skip_planar = true;  ///< no weights of geometry where all taps lie in one plane

@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
-#include "frame/luminance.h"
 #include "frame/strips.h"
 #include "reproject/warp.h"
 #include "temporal/edges.h"
@@ -30,26 +28,7 @@ void expect_bases(int found, int wanted) {
 // Longest age at edges, over that of the pixels around, where light changes.
 constexpr float kEdgeShare = 2.0f / 3.0f;
 
-constexpr float kNotShown = std::numeric_limits<float>::quiet_NaN();
-
 }  // namespace
-
-void EigenOptions::validate() const {
-  taps.validate();
-  shrink.validate();
-  fireflies.validate();
-  correction.validate();
-  innovation.validate();
-  budget.validate();
-  guided.validate();
-  atrous.validate();
-  EL_CHECK(birth >= 0.0 && birth <= 1.0, "birth {}: expected [0, 1]", birth);
-  EL_CHECK(young >= 0.0f && young <= 255.0f, "young {}: expected [0, 255] frames", young);
-  EL_CHECK(changing >= 1.0f && changing <= 255.0f, "changing {}: expected [1, 255] frames",
-           changing);
-  EL_CHECK(edge >= 1.0f && edge <= 255.0f, "edge {}: expected [1, 255] frames", edge);
-  EL_CHECK(quiet >= 0.0f && quiet <= 1.0f, "quiet {}: expected [0, 1]", quiet);
-}
 
 EigenDenoiser::EigenDenoiser(const DenoiserOptions& options, const EigenOptions& parts)
     : options_(parts),
@@ -60,14 +39,11 @@ EigenDenoiser::EigenDenoiser(const DenoiserOptions& options, const EigenOptions&
       warped_bases_(extent_, 1),
       variance_(extent_),
       warped_variance_(extent_),
-      shown_(extent_),
-      earlier_(extent_),
       memory_(extent_, options.bases),
       budget_(extent_, parts.budget),
       fireflies_(extent_, parts.fireflies),
       correction_(extent_, parts.correction),
-      guided_(extent_, parts.guided),
-      atrous_(extent_, parts.atrous),
+      filter_(extent_, parts),
       coefficients_(extent_, options.bases),
       learning_(extent_, options.bases),
       sums_(static_cast<std::size_t>(tiles_.count())),
@@ -78,7 +54,6 @@ EigenDenoiser::EigenDenoiser(const DenoiserOptions& options, const EigenOptions&
       residual_(make_planes<3>(extent_)),
       innovation_(extent_),
       expected_(extent_),
-      guided_light_(make_planes<3>(extent_)),
       output_(make_planes<3>(extent_)),
       samples_(extent_),
       old_age_(extent_),
@@ -162,7 +137,7 @@ void EigenDenoiser::warp_history() {
   if (!moving) {
     std::swap(bases_, warped_bases_);
     std::swap(variance_, warped_variance_);
-    std::swap(shown_, earlier_);
+    filter_.keep();
   }
   const SumInputs history{warped_bases_, frame_, warped_variance_, memory_.active()};
   for_each_strip(tiles_, [&](const Strip& strip) {
@@ -192,7 +167,7 @@ void EigenDenoiser::warp_row(const Tile& row) {
   if (has_edges_) find_edges(frame_, options_.taps, row, edge_);
   warp_bases(bases_, taps, row, warped_bases_);
   warp_plane(variance_, taps, row, warped_variance_);
-  if (options_.look_back) warp_plane(shown_, taps, row, earlier_);
+  filter_.warp(taps, row);
 }
 
 bool EigenDenoiser::resample(FrameSource& source, std::int64_t planned) {
@@ -332,48 +307,11 @@ void EigenDenoiser::clear_tile(const Tile& tile) {
 }
 
 void EigenDenoiser::filter() {
-  fill_young();
-  if (options_.look_back) fill_earlier();
-  report_.skipped_filter = options_.filter
-                               ? atrous_.process(frame_, options_.quiet, output_, output_variance_,
-                                                 options_.look_back ? &earlier_ : nullptr)
-                               : report_.surface_pixels;
-  report_.skipped_geometry = options_.filter ? atrous_.planar_pixels() : 0;
-  if (!options_.look_back) return;
-  for_each_segment(tiles_, [&](const Tile& row) {
-    for (int x = row.x0; x < row.x1; ++x) shown_(x, row.y0) = luminance(output_, x, row.y0);
-  });
-}
-
-// New pixels have not been shown.
-void EigenDenoiser::fill_earlier() {
-  for_each_segment(tiles_, [&](const Tile& row) {
-    if (counts_[static_cast<std::size_t>(row.index)].fresh == 0) return;
-    for (int x = row.x0; x < row.x1; ++x) {
-      if (old_age_(x, row.y0) == 0.0f) earlier_(x, row.y0) = kNotShown;
-    }
-  });
-}
-
-// Young pixels lean on what their surroundings say of such a surface (Bauszat 2011). The share that
-// they keep of their own grows with age; so does the share of their variance.
-void EigenDenoiser::fill_young() {
-  report_.skipped_guided = guided_.process({frame_, output_, new_age_, young_}, guided_light_);
-  if (report_.skipped_guided == static_cast<std::int64_t>(extent_.pixels())) return;
-  for_each_tile(tiles_, [&](const Tile& tile) {
-    for (int y = tile.y0; y < tile.y1; ++y) {
-      for (int x = tile.x0; x < tile.x1; ++x) {
-        // Without geometry no neighbor can stand in.
-        if (young_(x, y) == 0 || std::isinf(frame_.surface.depth(x, y))) continue;
-        const float own = new_age_(x, y) / options_.young;
-        for (std::size_t c = 0; c < 3; ++c) {
-          const float guided = std::max(guided_light_[c](x, y), 0.0f);
-          output_[c](x, y) = guided + own * (output_[c](x, y) - guided);
-        }
-        output_variance_(x, y) *= own * own;
-      }
-    }
-  });
+  const FilterReport skipped =
+      filter_.process({frame_, old_age_, new_age_, young_}, output_, output_variance_);
+  report_.skipped_guided = skipped.guided;
+  report_.skipped_filter = options_.filter ? skipped.atrous : report_.surface_pixels;
+  report_.skipped_geometry = skipped.geometry;
 }
 
 void EigenDenoiser::save(StateWriter& out) const {
@@ -383,7 +321,7 @@ void EigenDenoiser::save(StateWriter& out) const {
   out.value("bases in use", bases_.bases());
   bases_.save(out);
   out.plane("variance", variance_);
-  out.plane("shown light", shown_);
+  filter_.save(out);
   memory_.save(out);
 }
 
@@ -399,7 +337,7 @@ void EigenDenoiser::load(StateReader& in) {
   bases_.reshape(bases);
   bases_.load(in);
   in.plane("variance", variance_);
-  in.plane("shown light", shown_);
+  filter_.load(in);
   memory_.load(in);
 }
 
