@@ -34,11 +34,11 @@ struct AtrousOptions {
 ///   binomial) with holes,
 ///   w = max(0, N_p . N_q)^64 * e(|N_p . (X_q - X_p)| / (plane_distance * depth_p))
 ///                            * e(|l_q - l_p| / (luminance_sigmas * sigma_p + 1e-4 |l_p|)
-///                              + |h_q - h_p| / (earlier_sigmas * sigma_p + earlier_share |h_p|))
+///                              + |g_q - g_p| / (earlier_sigmas * sigma_p + earlier_share |g_p|))
 /// where sigma_p^2 is the variance of luminance around p (3 x 3 Gaussian) and e(x) = (1 - x/8)^8,
-/// close to exp(-x), ends at x = 8. h is the luminance of an earlier picture, already filtered,
+/// close to exp(-x), ends at x = 8. g is the luminance of an earlier picture, already filtered,
 /// brought to this one's pixels: it knows, with less noise, where light changes from one pixel to
-/// the next, and is read for nothing else. Without one its term is 0, as it is where either h is
+/// the next, and is read for nothing else. Without one its term is 0, as it is where either g is
 /// NaN: not known. Variances follow: var(p) = sum (h w)^2 var(q) / (sum h w)^2. Pixels without
 /// surface neither give nor take; they keep their value. Nor do pixels whose normals have a product
 /// above kLargestCosine, or that have no depth, take from each other.
@@ -53,7 +53,7 @@ class Atrous {
  public:
   Atrous(Extent extent, const AtrousOptions& options);
 
-  /// Returns the number of surface pixels that were skipped in the first pass. `earlier`: h, or
+  /// Returns the number of surface pixels that were skipped in the first pass. `earlier`: g, or
   /// null.
   std::int64_t process(const Frame& guides, float quiet, Planes<3>& color, Plane<float>& variance,
                        const Plane<float>* earlier = nullptr);

@@ -67,7 +67,7 @@ inline double smooth_sigma(const AtrousImage& image, glm::ivec2 p) {
 
 }  // namespace detail
 
-/// Luminances h of an earlier picture, by AtrousImage::index; NaN: not known; empty: none.
+/// Luminances g of an earlier picture, by AtrousImage::index; NaN: not known; empty: none.
 using Earlier = std::vector<double>;
 
 /// w(p, q) of the header.
