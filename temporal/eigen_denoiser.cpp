@@ -94,6 +94,7 @@ void EigenDenoiser::start_frame(const StageTime& time) {
   report_.cut = !surfaces_.is_followed_by(frame_);
   report_[Stage::kSource] = time;
   std::fill(counts_.begin(), counts_.end(), TileCount{});
+  // Two rows at a time: those of a cell of the correction.
   for_each_strip(tiles_, [&](const Strip& strip) {
     for_each_band(strip, 2, [&](const Strip& band) {
       for_each_segment(tiles_, band, [&](const Tile& row) { count_surface(row); });

@@ -17,6 +17,7 @@ constexpr float kNotShown = std::numeric_limits<float>::quiet_NaN();
 
 OutputFilter::OutputFilter(Extent extent, const EigenOptions& options)
     : options_(options),
+      looks_back_(options.filter && options.look_back),
       tiles_(extent, kCoefficientTile, kCoefficientTile),
       guided_(extent, options.guided),
       atrous_(extent, options.atrous),
@@ -25,20 +26,20 @@ OutputFilter::OutputFilter(Extent extent, const EigenOptions& options)
       earlier_(extent) {}
 
 void OutputFilter::warp(const TapSegment& taps, const Tile& row) {
-  if (options_.look_back) warp_plane(shown_, taps, row, earlier_);
+  if (looks_back_) warp_plane(shown_, taps, row, earlier_);
 }
 
 FilterReport OutputFilter::process(const FilterInputs& in, Planes<3>& output,
                                    Plane<float>& variance) {
   FilterReport report;
   report.guided = fill_young(in, output, variance);
-  if (options_.look_back) forget_new(in.old_age);
+  if (looks_back_) forget_new(in.old_age);
   if (options_.filter) {
     report.atrous = atrous_.process(in.frame, options_.quiet, output, variance,
-                                    options_.look_back ? &earlier_ : nullptr);
+                                    looks_back_ ? &earlier_ : nullptr);
     report.geometry = atrous_.planar_pixels();
   }
-  if (!options_.look_back) return report;
+  if (!looks_back_) return report;
   for_each_segment(tiles_, [&](const Tile& row) {
     for (int x = row.x0; x < row.x1; ++x) shown_(x, row.y0) = luminance(output, x, row.y0);
   });

@@ -44,6 +44,7 @@ class OutputFilter {
   void forget_new(const Plane<float>& old_age);
 
   EigenOptions options_;
+  bool looks_back_;  // there are passes, and they do
   TileGrid tiles_;
   GuidedFilter guided_;
   Atrous atrous_;
