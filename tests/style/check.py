@@ -25,7 +25,7 @@ FOLDERS = {  # folder: those of ours that it may include besides itself
 
 THIRD_PARTY = [  # (includes, files that may have them)
     (r"(tbb|oneapi)/", ["frame/tiles.cpp"]),
-    (r"embree\d/", ["render/embree_scene.*"]),
+    (r"embree\d/", ["render/embree_*"]),
     (r"assimp/", ["render/scene_file*"]),
     (r"OpenImageIO/", ["sequences/exr_io.cpp", "sequences/ldr_image.cpp", "render/image_file.cpp"]),
     (r"hwy/", ["*_simd.cpp"]),

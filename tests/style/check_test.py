@@ -38,7 +38,7 @@ class CheckTest(unittest.TestCase):
             ("spatial/x.cpp", '#include "temporal/mean.h"\n', "spatial/ must not include temporal/"),
             ("frame/x.cpp", '#include "plane.h"\n', "does not start at the root"),
             ("spatial/x.cpp", "#include <tbb/parallel_for.h>\n", "belongs in frame/tiles.cpp only"),
-            ("render/x.cpp", "#include <embree3/rtcore.h>\n", "belongs in render/embree_scene.*"),
+            ("render/x.cpp", "#include <embree3/rtcore.h>\n", "belongs in render/embree_*"),
             ("render/x.cpp", "#include <nlohmann/json.hpp>\n", "belongs in sequences/*"),
             ("spatial/x.cpp", "#include <hwy/highway.h>\n", "belongs in *_simd.cpp only"),
             ("sequences/x.cpp", "#include <OpenImageIO/imageio.h>\n", "belongs in"),
