@@ -85,7 +85,8 @@ TEST_P(ThreadCount, LoopsMayNest) {
   EXPECT_EQ(calls.load(), 64);
 }
 
-INSTANTIATE_TEST_SUITE_P(Threads, ThreadCount, ::testing::Values(1, 2, 3));
+INSTANTIATE_TEST_SUITE_P(Threads, ThreadCount, ::testing::Values(1, 2, 3),
+                         ::testing::PrintToStringParamName());
 
 TEST(SetThreadCount, KeepsTheNumberAndZeroMeansOnePerCore) {
   set_thread_count(3);

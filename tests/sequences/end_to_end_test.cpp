@@ -149,7 +149,8 @@ TEST_F(EndToEnd, ADamagedCheckpointIsRefused) {
   EXPECT_THAT(rest.err(), HasSubstr("state.bin: damaged"));
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, EndToEndOf, testing::Values("noisy", "eigenlight"));
+INSTANTIATE_TEST_SUITE_P(Methods, EndToEndOf, testing::Values("noisy", "eigenlight"),
+                         [](const auto& method) { return std::string(method.param); });
 
 }  // namespace
 }  // namespace eigenlight
