@@ -75,7 +75,7 @@ struct EmbreeScene::Impl {
   Impl(const Scene& s, std::size_t moving_count);
   void set_transform(std::size_t instance, const glm::mat4& transform);
   /// Embree's hit in our terms.
-  [[nodiscard]] Hit resolve(const RTCRayHit& ray, const EmbreeGroup& group) const;
+  [[nodiscard]] QuadHit resolve(const RTCRayHit& ray, const EmbreeGroup& group) const;
 
   const Scene* scene;
   std::size_t first_moving;

@@ -30,7 +30,7 @@ RTCIntersectContext incoherent_context() {
 
 }  // namespace
 
-Hit EmbreeScene::Impl::resolve(const RTCRayHit& ray, const EmbreeGroup& group) const {
+QuadHit EmbreeScene::Impl::resolve(const RTCRayHit& ray, const EmbreeGroup& group) const {
   const RTCHit& hit = ray.hit;
   glm::vec3 normal(hit.Ng_x, hit.Ng_y, hit.Ng_z);
   const bool instanced = hit.instID[0] != RTC_INVALID_GEOMETRY_ID;
@@ -41,8 +41,9 @@ Hit EmbreeScene::Impl::resolve(const RTCRayHit& ray, const EmbreeGroup& group) c
     part = &parts[mesh][hit.geomID];
     normal = placements[member.instance].normal_matrix * normal;
   }
-  const Quads::Point p = part->quads.point(hit.primID, hit.u, hit.v);
-  return {ray.ray.tfar, p.u, p.v, member.instance, p.triangle, glm::normalize(normal)};
+  part->quads.prefetch(hit.primID);
+  const float t = ray.ray.tfar;
+  return {{t, hit.u, hit.v, member.instance, hit.primID, glm::normalize(normal)}, &part->quads};
 }
 
 EmbreeScene::EmbreeScene(const Scene& scene, std::size_t moving)
@@ -69,10 +70,24 @@ void EmbreeScene::set_poses(std::span<const glm::mat4> poses) {
 }
 
 std::optional<Hit> EmbreeScene::intersect(const Ray& ray) const {
+  std::optional<QuadHit> hit = find(ray);
+  if (!hit) return std::nullopt;
+  look_up(*hit);
+  return *hit;
+}
+
+void EmbreeScene::look_up(QuadHit& hit) {
+  const Quads::Point p = hit.quads->point(hit.triangle, hit.u, hit.v);
+  hit.triangle = p.triangle;
+  hit.u = p.u;
+  hit.v = p.v;
+}
+
+std::optional<QuadHit> EmbreeScene::find(const Ray& ray) const {
   const FloatTrapsOff embree_calculates_with_inf;
   RTCRayHit r{};
   r.ray = to_embree(ray);
-  std::optional<Hit> closest;
+  std::optional<QuadHit> closest;
   for (const EmbreeGroup* group : {&impl_->still, &impl_->moving}) {
     if (group->empty()) continue;
     r.hit.geomID = r.hit.primID = r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;

@@ -34,6 +34,13 @@ struct Hit {
   glm::vec3 normal{0.0f};      ///< geometric, unit, world space, of either side
 };
 
+class Quads;
+
+/// A hit whose triangle, u and v are still to be looked up: they are those of a quad (quads.h).
+struct QuadHit : Hit {
+  const Quads* quads = nullptr;
+};
+
 /// All triangles of a scene, ready for rays. Safe to trace from any number of threads; the bits of
 /// a hit depend on the scene alone, not on threads. Light shapes are not part of it.
 ///
@@ -55,6 +62,10 @@ class EmbreeScene {
   void set_poses(std::span<const glm::mat4> poses);
 
   [[nodiscard]] std::optional<Hit> intersect(const Ray& ray) const;
+  /// The same in two steps, for memory is asked for what the second reads: it should come when
+  /// other rays have been traced.
+  [[nodiscard]] std::optional<QuadHit> find(const Ray& ray) const;
+  static void look_up(QuadHit& hit);
   [[nodiscard]] bool occluded(const Ray& ray) const;
   /// Product of the base colors of all thin glass between t_min and t_max; 1 where there is none.
   [[nodiscard]] glm::vec3 glass_tint(const Ray& ray) const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace eigenlight {
@@ -24,15 +25,23 @@ bool PathTracer::sample_ray(const SurfacePoint& point, Sampler& sampler, Bounce&
   const float phi = 2.0f * kPi * u.y;
   const float height = std::sqrt(1.0f - u.x);
   const glm::vec3 local(radius * std::cos(phi), radius * std::sin(phi), height);
-  bounce = Bounce();
-  bounce.ray = {point.origin, around(point.normal, local)};
+  // Member by member: a whole value, put together on the stack and copied in wider words than it
+  // was written in, waits for those to arrive.
+  bounce.ray.origin = point.origin;
+  bounce.ray.direction = around(point.normal, local);
+  bounce.ray.t_min = 0.0f;
+  bounce.ray.t_max = std::numeric_limits<float>::infinity();
+  bounce.ray.quick = false;
   bounce.pdf = height / kPi;
+  bounce.tint = glm::vec3(1.0f);
+  bounce.hit.reset();
+  bounce.shape.reset();
   return glm::dot(bounce.ray.direction, point.geometric) > 0.0f && bounce.pdf > 0.0f;
 }
 
-void PathTracer::trace(Bounce& bounce, std::int64_t& rays) const {
+void PathTracer::find(Bounce& bounce, std::int64_t& rays) const {
   ++rays;
-  bounce.hit = world_.geometry.intersect(bounce.ray);
+  bounce.hit = world_.geometry.find(bounce.ray);
   Ray rest = bounce.ray;
   if (bounce.hit) rest.t_max = bounce.hit->t;
   bounce.shape = world_.lights.intersect(rest);
@@ -41,6 +50,11 @@ void PathTracer::trace(Bounce& bounce, std::int64_t& rays) const {
     rest.t_max = bounce.shape->t;
   }
   bounce.tint = world_.geometry.glass_tint(rest);
+}
+
+void PathTracer::trace(Bounce& bounce, std::int64_t& rays) const {
+  find(bounce, rays);
+  if (bounce.hit) EmbreeScene::look_up(*bounce.hit);
 }
 
 // Radiance that lights emit against the ray, times the weight against aiming at them.
@@ -142,13 +156,14 @@ void PathTracer::indirect(std::span<Path> paths, std::int64_t& rays) const {
     };
     for (int depth = 0; end != alive.begin(); ++depth) {
       keep([&](Path& path) { return send(path, depth, rays); });
+      std::for_each(alive.begin(), end, [&](Path* path) { look_up(*path); });
       keep([&](Path& path) { return arrive(path, depth); });
       keep([&](Path& path) { return reflect(path, depth, rays); });
     }
   }
 }
 
-// One step of a path in three, each of which asks memory for what the next will read. They return
+// One step of a path in four, each of which asks memory for what the next will read. They return
 // whether the path goes on.
 bool PathTracer::send(Path& path, int depth, std::int64_t& rays) const {
   Bounce& bounce = path.bounce_;
@@ -158,9 +173,15 @@ bool PathTracer::send(Path& path, int depth, std::int64_t& rays) const {
     path.light += path.throughput_ * look_for_lights(bounce, rays);
     return false;
   }
-  trace(bounce, rays);
-  if (bounce.hit) world_.surfaces.prefetch(*bounce.hit);
+  find(bounce, rays);
   return true;
+}
+
+void PathTracer::look_up(Path& path) const {
+  Bounce& bounce = path.bounce_;
+  if (!bounce.hit) return;
+  EmbreeScene::look_up(*bounce.hit);
+  world_.surfaces.prefetch(*bounce.hit);
 }
 
 bool PathTracer::arrive(Path& path, int depth) const {

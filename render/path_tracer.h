@@ -58,7 +58,7 @@ class PathTracer {
     Ray ray;
     float pdf = 0.0f;  // per steradian
     glm::vec3 tint{1.0f};
-    std::optional<Hit> hit;
+    std::optional<QuadHit> hit;     // looked up by trace(), not by find()
     std::optional<ShapeHit> shape;  // then there is no hit
   };
   [[nodiscard]] glm::vec3 aim(const SurfacePoint& point, Sampler& sampler, bool quick,
@@ -70,10 +70,12 @@ class PathTracer {
   [[nodiscard]] glm::vec3 shadowed(const SurfacePoint& point, const LightSample& sample,
                                    const Aim& aim, std::int64_t& rays) const;
   [[nodiscard]] bool sample_ray(const SurfacePoint& point, Sampler& sampler, Bounce& bounce) const;
+  void find(Bounce& bounce, std::int64_t& rays) const;
   void trace(Bounce& bounce, std::int64_t& rays) const;
   [[nodiscard]] glm::vec3 look_for_lights(Bounce& bounce, std::int64_t& rays) const;
   [[nodiscard]] glm::vec3 seen(const Bounce& bounce) const;
   [[nodiscard]] bool send(Path& path, int depth, std::int64_t& rays) const;
+  void look_up(Path& path) const;
   [[nodiscard]] bool arrive(Path& path, int depth) const;
   [[nodiscard]] bool reflect(Path& path, int depth, std::int64_t& rays) const;
 
