@@ -87,6 +87,14 @@ class PathTracer {
 struct PathTracer::Path {
   Path() : sampler(0, 0) {}
   Path(const SurfacePoint& point, const Sampler& s) : at(point), sampler(s) {}
+  /// The same as a new path.
+  void start(const SurfacePoint& point, const Sampler& s) {
+    at = point;
+    sampler = s;
+    light = glm::vec3(0.0f);
+    throughput_ = glm::vec3(1.0f);
+    texel_ = nullptr;
+  }
 
   SurfacePoint at;
   Sampler sampler;

@@ -19,7 +19,7 @@ class SampleQueue {
 
   /// `mean` must not move until flush().
   void add(const SurfacePoint& point, const Sampler& sampler, FiniteMean& mean) {
-    paths_[size_] = {point, sampler};
+    paths_[size_].start(point, sampler);
     means_[size_] = &mean;
     if (++size_ == paths_.size()) flush();
   }
