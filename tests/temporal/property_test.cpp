@@ -97,9 +97,10 @@ std::int64_t pixels_without_light(const Frame& frame) {
 
 // Largest output over the largest input so far. Means stay within their inputs. Gains extrapolate,
 // and the guided filter is linear in its guides, but nothing runs away: 9 is the light's own range,
-// 0.2 to 1.8. The paper of chen2012 promises no bound: a basis with two usable pixels may show any.
+// 0.2 to 1.8. The papers of chen2012 and meyer2006 promise no bound: a basis with two usable pixels
+// may show any, and a point may be shown in frames that hold 500 times the light it was seen in.
 float most_gain(std::string_view method) {
-  if (method == "chen2012") return std::numeric_limits<float>::max();
+  if (method == "chen2012" || method == "meyer2006") return std::numeric_limits<float>::max();
   for (const char* mean : {"noisy", "mean", "cross-bilateral", "atrous"}) {
     if (method == mean) return 1.0001f;
   }
