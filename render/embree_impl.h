@@ -3,6 +3,7 @@
 
 #include <embree3/rtcore.h>
 
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
@@ -28,6 +29,7 @@ struct EmbreePart {
   const Material* material = nullptr;
   const Texture* texture = nullptr;  ///< of the holes; null: none
   Quads quads;
+  std::vector<std::array<glm::vec2, 4>> uv;  ///< of each quad's corners, if there are holes
 };
 
 /// Triangles that are nothing but hole are left out; those without holes need no filter and are a

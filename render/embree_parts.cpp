@@ -13,12 +13,11 @@ namespace {
 
 void reject_holes(const RTCFilterFunctionNArguments* args) {
   const auto& part = *static_cast<const EmbreePart*>(args->geometryUserPtr);
-  const Quads::Point p =
-      part.quads.point(RTCHitN_primID(args->hit, args->N, 0), RTCHitN_u(args->hit, args->N, 0),
-                       RTCHitN_v(args->hit, args->N, 0));
-  const glm::uvec3 t = part.mesh->triangles[p.triangle];
-  const auto& uv = part.mesh->texcoords;
-  const glm::vec2 at = (1.0f - p.u - p.v) * uv[t.x] + p.u * uv[t.y] + p.v * uv[t.z];
+  const auto& uv = part.uv[RTCHitN_primID(args->hit, args->N, 0)];
+  const float u = RTCHitN_u(args->hit, args->N, 0), v = RTCHitN_v(args->hit, args->N, 0);
+  const glm::vec2 at = u + v > 1.0f
+                           ? (u + v - 1.0f) * uv[2] + (1.0f - u) * uv[3] + (1.0f - v) * uv[1]
+                           : (1.0f - u - v) * uv[0] + u * uv[1] + v * uv[3];
   if (bilinear_alpha(*part.texture, at) < part.material->alpha_cutoff) args->valid[0] = 0;
 }
 
@@ -47,8 +46,14 @@ std::vector<EmbreePart> split_by_opacity(const Scene& scene, const Mesh& mesh) {
     const Opacity opacity = map ? map->between({uv[t.x], uv[t.y], uv[t.z]}) : Opacity::kSolid;
     if (opacity != Opacity::kHole) (opacity == Opacity::kSolid ? solid : mixed).push_back(i);
   }
-  if (!solid.empty()) parts.push_back({&mesh, &material, nullptr, Quads(mesh, solid)});
-  if (!mixed.empty()) parts.push_back({&mesh, &material, texture, Quads(mesh, mixed)});
+  if (!solid.empty()) parts.push_back({&mesh, &material, nullptr, Quads(mesh, solid), {}});
+  if (mixed.empty()) return parts;
+  EmbreePart& part =
+      parts.emplace_back(EmbreePart{&mesh, &material, texture, Quads(mesh, mixed), {}});
+  const auto& uv = mesh.texcoords;
+  for (const glm::uvec4& q : part.quads.corners()) {
+    part.uv.push_back({uv[q.x], uv[q.y], uv[q.z], uv[q.w]});
+  }
   return parts;
 }
 
