@@ -1,7 +1,6 @@
 #include <cmath>
 #include <glm/gtc/type_ptr.hpp>
 #include <stdexcept>
-#include <utility>
 
 #include "frame/check.h"
 #include "frame/float_traps.h"
@@ -12,6 +11,11 @@ namespace eigenlight {
 namespace {
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+void pose(RTCGeometry instance, const glm::mat4& to_world) {
+  rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, glm::value_ptr(to_world));
+  rtcCommitGeometry(instance);
+}
 
 }  // namespace
 
@@ -83,9 +87,7 @@ EmbreeHandle<RTCGeometry> EmbreeScene::Impl::make_instance(int mesh, const glm::
   }
   EmbreeHandle<RTCGeometry> geometry(rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_INSTANCE));
   rtcSetGeometryInstancedScene(geometry.get(), shared.get());
-  rtcSetGeometryTransform(geometry.get(), 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR,
-                          glm::value_ptr(transform));
-  rtcCommitGeometry(geometry.get());
+  pose(geometry.get(), transform);
   return geometry;
 }
 
@@ -114,10 +116,7 @@ void EmbreeScene::Impl::set_transform(std::size_t instance, const glm::mat4& tra
   transforms[instance] = transform;
   placements[instance] = placement_of(transform);
   const EmbreeHandle<RTCGeometry>& geometry = instance_geometry[instance];
-  if (!geometry) return;  // a mesh without triangles
-  rtcSetGeometryTransform(geometry.get(), 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR,
-                          glm::value_ptr(transform));
-  rtcCommitGeometry(geometry.get());
+  if (geometry) pose(geometry.get(), transform);  // null: a mesh without triangles
 }
 
 }  // namespace eigenlight

@@ -13,11 +13,9 @@ namespace {
 
 void reject_holes(const RTCFilterFunctionNArguments* args) {
   const auto& part = *static_cast<const EmbreePart*>(args->geometryUserPtr);
-  const auto& uv = part.uv[RTCHitN_primID(args->hit, args->N, 0)];
-  const float u = RTCHitN_u(args->hit, args->N, 0), v = RTCHitN_v(args->hit, args->N, 0);
-  const glm::vec2 at = u + v > 1.0f
-                           ? (u + v - 1.0f) * uv[2] + (1.0f - u) * uv[3] + (1.0f - v) * uv[1]
-                           : (1.0f - u - v) * uv[0] + u * uv[1] + v * uv[3];
+  const glm::vec2 at =
+      Quads::interpolate(part.uv[RTCHitN_primID(args->hit, args->N, 0)],
+                         RTCHitN_u(args->hit, args->N, 0), RTCHitN_v(args->hit, args->N, 0));
   if (bilinear_alpha(*part.texture, at) < part.material->alpha_cutoff) args->valid[0] = 0;
 }
 
@@ -38,11 +36,11 @@ std::vector<EmbreePart> split_by_opacity(const Scene& scene, const Mesh& mesh) {
                      material.alpha_cutoff > 0.0f && !material.thin_glass;
   const Texture* texture =
       holes ? &scene.textures[static_cast<std::size_t>(material.texture)] : nullptr;
+  const auto& uv = mesh.texcoords;
   std::optional<OpacityMap> map;
   if (holes) map.emplace(*texture, material.alpha_cutoff);
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
     const glm::uvec3& t = mesh.triangles[i];
-    const auto& uv = mesh.texcoords;
     const Opacity opacity = map ? map->between({uv[t.x], uv[t.y], uv[t.z]}) : Opacity::kSolid;
     if (opacity != Opacity::kHole) (opacity == Opacity::kSolid ? solid : mixed).push_back(i);
   }
@@ -50,7 +48,6 @@ std::vector<EmbreePart> split_by_opacity(const Scene& scene, const Mesh& mesh) {
   if (mixed.empty()) return parts;
   EmbreePart& part =
       parts.emplace_back(EmbreePart{&mesh, &material, texture, Quads(mesh, mixed), {}});
-  const auto& uv = mesh.texcoords;
   for (const glm::uvec4& q : part.quads.corners()) {
     part.uv.push_back({uv[q.x], uv[q.y], uv[q.z], uv[q.w]});
   }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace eigenlight {
@@ -25,21 +24,13 @@ bool PathTracer::sample_ray(const SurfacePoint& point, Sampler& sampler, Bounce&
   const float phi = 2.0f * kPi * u.y;
   const float height = std::sqrt(1.0f - u.x);
   const glm::vec3 local(radius * std::cos(phi), radius * std::sin(phi), height);
-  // Member by member: a whole value, put together on the stack and copied in wider words than it
-  // was written in, waits for those to arrive.
   bounce.ray.origin = point.origin;
   bounce.ray.direction = around(point.normal, local);
-  bounce.ray.t_min = 0.0f;
-  bounce.ray.t_max = std::numeric_limits<float>::infinity();
-  bounce.ray.quick = false;
   bounce.pdf = height / kPi;
-  bounce.tint = glm::vec3(1.0f);
-  bounce.hit.reset();
-  bounce.shape.reset();
   return glm::dot(bounce.ray.direction, point.geometric) > 0.0f && bounce.pdf > 0.0f;
 }
 
-void PathTracer::find(Bounce& bounce, std::int64_t& rays) const {
+void PathTracer::trace(Bounce& bounce, std::int64_t& rays) const {
   ++rays;
   bounce.hit = world_.geometry.find(bounce.ray);
   Ray rest = bounce.ray;
@@ -50,11 +41,6 @@ void PathTracer::find(Bounce& bounce, std::int64_t& rays) const {
     rest.t_max = bounce.shape->t;
   }
   bounce.tint = world_.geometry.glass_tint(rest);
-}
-
-void PathTracer::trace(Bounce& bounce, std::int64_t& rays) const {
-  find(bounce, rays);
-  if (bounce.hit) EmbreeScene::look_up(*bounce.hit);
 }
 
 // Radiance that lights emit against the ray, times the weight against aiming at them.
@@ -80,6 +66,8 @@ glm::vec3 PathTracer::look_for_lights(Bounce& bounce, std::int64_t& rays) const 
   } else {
     ++rays;
     if (world_.geometry.occluded(bounce.ray)) return glm::vec3(0.0f);
+    bounce.hit.reset();
+    bounce.shape.reset();
     bounce.tint = world_.geometry.glass_tint(bounce.ray);
   }
   return bounce.tint * seen(bounce);
@@ -173,7 +161,7 @@ bool PathTracer::send(Path& path, int depth, std::int64_t& rays) const {
     path.light += path.throughput_ * look_for_lights(bounce, rays);
     return false;
   }
-  find(bounce, rays);
+  trace(bounce, rays);
   return true;
 }
 

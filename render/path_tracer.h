@@ -54,11 +54,11 @@ class PathTracer {
   [[nodiscard]] std::uint8_t lit_by(const SurfacePoint& point, std::int64_t& rays) const;
 
  private:
-  struct Bounce {  // a cosine-distributed ray and what it met
+  struct Bounce {  // a cosine-distributed ray, by sample_ray(); and what it met, by trace()
     Ray ray;
     float pdf = 0.0f;  // per steradian
     glm::vec3 tint{1.0f};
-    std::optional<QuadHit> hit;     // looked up by trace(), not by find()
+    std::optional<QuadHit> hit;     // looked up by look_up()
     std::optional<ShapeHit> shape;  // then there is no hit
   };
   [[nodiscard]] glm::vec3 aim(const SurfacePoint& point, Sampler& sampler, bool quick,
@@ -70,7 +70,6 @@ class PathTracer {
   [[nodiscard]] glm::vec3 shadowed(const SurfacePoint& point, const LightSample& sample,
                                    const Aim& aim, std::int64_t& rays) const;
   [[nodiscard]] bool sample_ray(const SurfacePoint& point, Sampler& sampler, Bounce& bounce) const;
-  void find(Bounce& bounce, std::int64_t& rays) const;
   void trace(Bounce& bounce, std::int64_t& rays) const;
   [[nodiscard]] glm::vec3 look_for_lights(Bounce& bounce, std::int64_t& rays) const;
   [[nodiscard]] glm::vec3 seen(const Bounce& bounce) const;
@@ -86,14 +85,13 @@ class PathTracer {
 /// One sample of indirect light.
 struct PathTracer::Path {
   Path() : sampler(0, 0) {}
-  Path(const SurfacePoint& point, const Sampler& s) : at(point), sampler(s) {}
+  Path(const SurfacePoint& point, const Sampler& s) : Path() { start(point, s); }
   /// The same as a new path.
   void start(const SurfacePoint& point, const Sampler& s) {
     at = point;
     sampler = s;
     light = glm::vec3(0.0f);
     throughput_ = glm::vec3(1.0f);
-    texel_ = nullptr;
   }
 
   SurfacePoint at;

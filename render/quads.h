@@ -1,6 +1,7 @@
 // Triangles taken two by two, for a hierarchy of half as many leaves.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
@@ -28,6 +29,11 @@ class Quads {
   /// The point of a quad where (1 - u - v) c0 + u c1 + v c3, beyond the diagonal
   /// (u + v - 1) c2 + (1 - u) c3 + (1 - v) c1.
   [[nodiscard]] Point point(std::uint32_t quad, float u, float v) const;
+  /// The same point of what the corners hold.
+  [[nodiscard]] static glm::vec2 interpolate(const std::array<glm::vec2, 4>& c, float u, float v) {
+    if (u + v > 1.0f) return (u + v - 1.0f) * c[2] + (1.0f - u) * c[3] + (1.0f - v) * c[1];
+    return (1.0f - u - v) * c[0] + u * c[1] + v * c[3];
+  }
   /// Asks memory for what point() will read.
   void prefetch(std::uint32_t quad) const { __builtin_prefetch(&halves_[quad]); }
 
