@@ -1,5 +1,5 @@
 // State that outlives a process: named values in one byte string. Files, versions and checksums are
-// the business of sequences/checkpoint.
+// the business of sequences/files/checkpoint.
 #pragma once
 
 #include <cstdint>

@@ -8,14 +8,14 @@
 #include "frame/check.h"
 #include "frame/random.h"
 #include "frame/tiles.h"
-#include "render/embree_scene.h"
-#include "render/gbuffer.h"
-#include "render/light_set.h"
-#include "render/path_tracer.h"
-#include "render/sample_mean.h"
-#include "render/sample_queue.h"
-#include "render/sampler.h"
-#include "render/surface.h"
+#include "render/lights/light_set.h"
+#include "render/paths/gbuffer.h"
+#include "render/paths/path_tracer.h"
+#include "render/paths/sample_mean.h"
+#include "render/paths/sample_queue.h"
+#include "render/paths/sampler.h"
+#include "render/rays/embree_scene.h"
+#include "render/rays/surface.h"
 
 namespace eigenlight {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "frame/frame.h"
 #include "render/antialias/picture.h"
-#include "render/scene.h"
+#include "render/scene/scene.h"
 
 namespace eigenlight {
 

@@ -1,20 +1,21 @@
+#include "temporal/methods.h"
+
 #include <algorithm>
 #include <string>
 #include <utility>
 
-#include "spatial/atrous_filter.h"
-#include "spatial/cross_bilateral.h"
-#include "spatial/guided_spatial.h"
-#include "spatial/pyramid_filter.h"
+#include "spatial/rivals/atrous_filter.h"
+#include "spatial/rivals/cross_bilateral.h"
+#include "spatial/rivals/guided_spatial.h"
+#include "spatial/rivals/pyramid_filter.h"
 #include "temporal/baselines/bmfr.h"
 #include "temporal/baselines/chen2012.h"
+#include "temporal/baselines/frame_by_frame.h"
 #include "temporal/baselines/hems2010.h"
 #include "temporal/baselines/meyer2006.h"
 #include "temporal/baselines/running_mean.h"
 #include "temporal/baselines/svgf.h"
-#include "temporal/denoiser.h"
-#include "temporal/eigen_parts.h"
-#include "temporal/frame_by_frame.h"
+#include "temporal/eigen/eigen_parts.h"
 
 namespace eigenlight {
 namespace {

@@ -5,8 +5,8 @@
 #include <glm/glm.hpp>
 
 #include "frame/frame.h"
-#include "render/gbuffer.h"
-#include "render/sample_mean.h"
+#include "render/paths/gbuffer.h"
+#include "render/paths/sample_mean.h"
 
 namespace eigenlight {
 

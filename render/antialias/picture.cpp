@@ -10,7 +10,7 @@
 #include "frame/tiles.h"
 #include "render/antialias/lookup.h"
 #include "render/antialias/reconstruct.h"
-#include "render/sample_queue.h"
+#include "render/paths/sample_queue.h"
 
 namespace eigenlight {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "render/antialias/guide_map.h"
 #include "render/antialias/options.h"
-#include "render/path_tracer.h"
+#include "render/paths/path_tracer.h"
 
 namespace eigenlight {
 

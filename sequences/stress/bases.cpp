@@ -7,8 +7,8 @@
 #include "sequences/stress/stress_case.h"
 #include "temporal/baselines/basis_history.h"
 #include "temporal/baselines/chen2012_pca.h"
-#include "temporal/small_matrix.h"
-#include "temporal/tile_sums.h"
+#include "temporal/bases/small_matrix.h"
+#include "temporal/bases/tile_sums.h"
 
 namespace eigenlight {
 namespace {

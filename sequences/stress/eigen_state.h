@@ -3,8 +3,8 @@
 
 #include "reproject/basis_field.h"
 #include "reproject/surface_history.h"
+#include "temporal/bases/light_memory.h"
 #include "temporal/denoiser.h"
-#include "temporal/light_memory.h"
 
 namespace eigenlight {
 

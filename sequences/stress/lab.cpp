@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "sequences/checkpoint.h"
-#include "sequences/exr_io.h"
+#include "sequences/files/checkpoint.h"
+#include "sequences/files/exr_io.h"
 
 namespace eigenlight {
 

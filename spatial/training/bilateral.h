@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "spatial/pyramid.h"
+#include "spatial/rivals/pyramid.h"
 
 namespace eigenlight {
 namespace bilateral_detail {

@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "spatial/pyramid.h"
+#include "spatial/rivals/pyramid.h"
 #include "spatial/training/bilateral.h"
 #include "spatial/training/structural_loss.h"
 

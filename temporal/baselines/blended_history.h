@@ -6,7 +6,7 @@
 
 #include "frame/tiles.h"
 #include "temporal/baselines/basis_history.h"
-#include "temporal/sample_counts.h"
+#include "temporal/samples/sample_counts.h"
 
 namespace eigenlight {
 

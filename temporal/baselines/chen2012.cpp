@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "temporal/bases/tile_sums.h"
 #include "temporal/stage_clock.h"
-#include "temporal/tile_sums.h"
 
 namespace eigenlight {
 namespace {

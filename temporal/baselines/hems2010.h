@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "reproject/taps.h"
-#include "spatial/cross_bilateral.h"
-#include "temporal/sample_counts.h"
+#include "spatial/rivals/cross_bilateral.h"
+#include "temporal/samples/sample_counts.h"
 
 namespace eigenlight {
 
@@ -22,8 +22,8 @@ struct HemsOptions {
 /// Herzog, Eisemann, Myszkowski and Seidel 2010, as Chen 2012 (section 4.2) compares with it: a
 /// weighted sum over the past 16 frames, in which similar colors weigh more, of what a
 /// geometry-aware window makes of each frame:
-///   s = the cross bilateral filter of u (spatial/cross_bilateral.h), by normals and depth alone,
-///   out(p) = sum_k w_k s_k / sum_k w_k,  k = 0 .. 16 frames ago, w_0 = 1,
+///   s = the cross bilateral filter of u (spatial/rivals/cross_bilateral.h), by normals and depth
+///   alone, out(p) = sum_k w_k s_k / sum_k w_k,  k = 0 .. 16 frames ago, w_0 = 1,
 ///     w_k = decay^k exp(-|s_k - s_0|^2 / (2 color^2 (|s_k|^2 + |s_0|^2) / 2)).
 /// s_k is read at the point's own place k frames ago: its motion is followed from frame to frame,
 /// and each step has to find the surface by the rule of reproject/taps.h. Every frame is shaded in

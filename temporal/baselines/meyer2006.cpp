@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "temporal/sample_counts.h"
+#include "temporal/samples/sample_counts.h"
 #include "temporal/stage_clock.h"
 
 namespace eigenlight {

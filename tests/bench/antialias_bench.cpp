@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "render/builtin_scenes.h"
+#include "render/builtin/builtin_scenes.h"
 #include "tests/support/scenes.h"
 
 namespace eigenlight {

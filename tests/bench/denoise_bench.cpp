@@ -25,8 +25,8 @@
 #include <cmath>
 
 #include "reproject/warp.h"
-#include "temporal/predict.h"
-#include "temporal/update.h"
+#include "temporal/bases/predict.h"
+#include "temporal/bases/update.h"
 #include "tests/bench/denoiser_loop.h"
 #include "tests/bench/floors.h"
 #include "tests/bench/register.h"

@@ -1,7 +1,7 @@
 // The loop as a user runs it, without what brings the frames.
 #pragma once
 
-#include "temporal/eigen_denoiser.h"
+#include "temporal/eigen/eigen_denoiser.h"
 #include "tests/bench/floors.h"
 #include "tests/bench/room_source.h"
 #include "tests/bench/setting.h"

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "spatial/atrous_filter.h"
-#include "spatial/cross_bilateral.h"
-#include "spatial/guided_spatial.h"
+#include "spatial/rivals/atrous_filter.h"
+#include "spatial/rivals/cross_bilateral.h"
+#include "spatial/rivals/guided_spatial.h"
 #include "tests/bench/floors.h"
 #include "tests/bench/register.h"
 #include "tests/bench/room.h"

@@ -16,13 +16,13 @@
 #include <string_view>
 #include <vector>
 
-#include "render/builtin_scenes.h"
+#include "render/builtin/builtin_scenes.h"
 #include "render/live_source.h"
-#include "sequences/flythrough.h"
-#include "sequences/metrics.h"
-#include "spatial/atrous_filter.h"
-#include "spatial/cross_bilateral.h"
-#include "spatial/guided_spatial.h"
+#include "sequences/metrics/metrics.h"
+#include "sequences/runs/flythrough.h"
+#include "spatial/rivals/atrous_filter.h"
+#include "spatial/rivals/cross_bilateral.h"
+#include "spatial/rivals/guided_spatial.h"
 
 namespace eigenlight {
 namespace {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "frame/luminance.h"
-#include "spatial/guided_spatial.h"
+#include "spatial/rivals/guided_spatial.h"
 #include "tests/bench/floors.h"
 #include "tests/bench/register.h"
 #include "tests/bench/room.h"

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <exception>
 
-#include "sequences/atomic_file.h"
+#include "sequences/files/atomic_file.h"
 #include "tests/support/precision_run.h"
 
 namespace eigenlight {

@@ -8,7 +8,7 @@
 
 #include "spatial/atrous.h"
 #include "spatial/guided_filter.h"
-#include "spatial/pyramid_filter.h"
+#include "spatial/rivals/pyramid_filter.h"
 #include "tests/bench/floors.h"
 #include "tests/bench/register.h"
 #include "tests/bench/room_source.h"

@@ -11,10 +11,10 @@
 
 #include "frame/random.h"
 #include "frame/tiles.h"
-#include "render/gbuffer.h"
-#include "render/path_tracer.h"
-#include "render/sample_queue.h"
-#include "render/scene_file.h"
+#include "render/loading/scene_file.h"
+#include "render/paths/gbuffer.h"
+#include "render/paths/path_tracer.h"
+#include "render/paths/sample_queue.h"
 #include "tests/support/scenes.h"
 
 namespace eigenlight {

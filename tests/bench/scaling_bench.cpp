@@ -1,8 +1,8 @@
 // How CPU time grows: of the loop with pixels and with bases K, of the guided filter with its
 // radius. Arguments and counters as in denoise_bench.cpp; guided_radius has `radius` in place of
 // `bases`.
-#include "spatial/cross_bilateral.h"
-#include "spatial/guided_spatial.h"
+#include "spatial/rivals/cross_bilateral.h"
+#include "spatial/rivals/guided_spatial.h"
 #include "tests/bench/denoiser_loop.h"
 #include "tests/bench/filter_work.h"
 #include "tests/bench/register.h"

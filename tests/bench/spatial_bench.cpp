@@ -9,7 +9,7 @@
 
 #include "spatial/guided_filter.h"
 #include "spatial/sample_budget.h"
-#include "temporal/eigen_denoiser.h"
+#include "temporal/eigen/eigen_denoiser.h"
 #include "tests/bench/filter_work.h"
 #include "tests/bench/register.h"
 #include "tests/bench/room_source.h"

@@ -1,5 +1,5 @@
 // make_compare_page FILE: the page of a made-up comparison, for the test in a browser.
-#include "sequences/atomic_file.h"
+#include "sequences/files/atomic_file.h"
 #include "tests/support/fake_comparison.h"
 
 int main(int argc, char** argv) {

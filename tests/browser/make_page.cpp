@@ -2,7 +2,7 @@
 #include <cstdlib>
 #include <numeric>
 
-#include "sequences/report.h"
+#include "sequences/pages/report.h"
 #include "tests/support/fake_run.h"
 
 int main(int argc, char** argv) {

@@ -8,9 +8,9 @@
 
 #include "frame/float_traps.h"
 #include "frame/tiles.h"
-#include "sequences/atomic_file.h"
-#include "sequences/checkpoint.h"
-#include "temporal/denoiser.h"
+#include "sequences/files/atomic_file.h"
+#include "sequences/files/checkpoint.h"
+#include "temporal/methods.h"
 #include "tests/fuzz/target.h"
 #include "tests/support/analytic_source.h"
 #include "tests/support/temp_dir.h"

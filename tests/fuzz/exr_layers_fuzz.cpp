@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "sequences/exr_layers.h"
+#include "sequences/files/exr_layers.h"
 #include "tests/fuzz/target.h"
 
 namespace eigenlight {

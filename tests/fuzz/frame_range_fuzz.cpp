@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "sequences/file_pattern.h"
-#include "sequences/frame_range.h"
+#include "sequences/files/file_pattern.h"
+#include "sequences/files/frame_range.h"
 #include "tests/fuzz/target.h"
 
 namespace eigenlight {

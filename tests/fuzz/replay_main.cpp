@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "frame/float_traps.h"
-#include "sequences/atomic_file.h"
+#include "sequences/files/atomic_file.h"
 #include "tests/fuzz/target.h"
 
 int main(int argc, char** argv) {

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "frame/camera.h"
-#include "render/scene_file_json.h"
-#include "sequences/camera_path.h"
+#include "render/loading/scene_file_json.h"
+#include "sequences/runs/camera_path.h"
 #include "tests/fuzz/target.h"
 #include "tests/support/temp_dir.h"
 

@@ -1,11 +1,11 @@
-// Twin of spatial/atrous_filter: double, pass by pass over whole images.
+// Twin of spatial/rivals/atrous_filter: double, pass by pass over whole images.
 #pragma once
 
 #include <array>
 #include <cmath>
 #include <vector>
 
-#include "spatial/atrous_filter.h"
+#include "spatial/rivals/atrous_filter.h"
 #include "tests/reference/surface_points.h"
 #include "tests/support/spatial_case.h"
 

@@ -1,5 +1,5 @@
-// Twin of temporal/coefficients: normal equations by Gauss-Jordan elimination, and interpolation
-// written out.
+// Twin of temporal/bases/coefficients: normal equations by Gauss-Jordan elimination, and
+// interpolation written out.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "temporal/coefficients.h"
+#include "temporal/bases/coefficients.h"
 
 namespace eigenlight::reference {
 

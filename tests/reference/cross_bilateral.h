@@ -1,9 +1,9 @@
-// Twin of spatial/cross_bilateral: double, pixel by pixel.
+// Twin of spatial/rivals/cross_bilateral: double, pixel by pixel.
 #pragma once
 
 #include <cmath>
 
-#include "spatial/cross_bilateral.h"
+#include "spatial/rivals/cross_bilateral.h"
 #include "tests/reference/surface_points.h"
 #include "tests/support/spatial_case.h"
 

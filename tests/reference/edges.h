@@ -1,10 +1,10 @@
-// Twin of temporal/edges: one pixel, in double.
+// Twin of temporal/change/edges: one pixel, in double.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 
-#include "temporal/edges.h"
+#include "temporal/change/edges.h"
 #include "tests/reference/surface_points.h"
 
 namespace eigenlight::reference {

@@ -1,10 +1,10 @@
-// Twin of temporal/innovation: one pixel, its window summed directly, in double.
+// Twin of temporal/change/innovation: one pixel, its window summed directly, in double.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 
-#include "temporal/innovation.h"
+#include "temporal/change/innovation.h"
 
 namespace eigenlight::reference {
 

@@ -1,11 +1,11 @@
-// Twin of temporal/predict: one pixel, in double.
+// Twin of temporal/bases/predict: one pixel, in double.
 #pragma once
 
 #include <array>
 #include <cmath>
 #include <limits>
 
-#include "temporal/predict.h"
+#include "temporal/bases/predict.h"
 #include "tests/reference/coefficients.h"
 #include "tests/reference/tile_sums.h"
 

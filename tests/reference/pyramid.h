@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "frame/frame.h"
-#include "spatial/pyramid.h"
+#include "spatial/rivals/pyramid.h"
 
 namespace eigenlight::reference {
 

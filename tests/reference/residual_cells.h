@@ -1,4 +1,4 @@
-// Twin of temporal/residual_cells: one cell or one pixel, in double, as the header says it.
+// Twin of temporal/change/residual_cells: one cell or one pixel, in double, as the header says it.
 #pragma once
 
 #include <algorithm>
@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "reproject/taps.h"
-#include "temporal/residual_cells.h"
+#include "temporal/change/residual_cells.h"
 
 namespace eigenlight::reference {
 

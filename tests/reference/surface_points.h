@@ -3,7 +3,7 @@
 
 #include <glm/glm.hpp>
 
-#include "spatial/spatial_filter.h"
+#include "spatial/rivals/spatial_filter.h"
 
 namespace eigenlight::reference {
 

@@ -1,11 +1,12 @@
-// Twin of temporal/tile_sums: all sums in double, pixel by pixel, from the formula in the header.
+// Twin of temporal/bases/tile_sums: all sums in double, pixel by pixel, from the formula in the
+// header.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "temporal/tile_sums.h"
+#include "temporal/bases/tile_sums.h"
 
 namespace eigenlight::reference {
 

@@ -1,10 +1,10 @@
-// Twin of temporal/update: one pixel, in double, line by line as in the header.
+// Twin of temporal/bases/update: one pixel, in double, line by line as in the header.
 #pragma once
 
 #include <algorithm>
 #include <array>
 
-#include "temporal/update.h"
+#include "temporal/bases/update.h"
 #include "tests/reference/coefficients.h"
 
 namespace eigenlight::reference {

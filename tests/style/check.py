@@ -6,6 +6,7 @@ include them, files stay short, headers have #pragma once, no flag that changes 
 every source is formatted as .clang-format says.
 """
 
+import collections
 import fnmatch
 import pathlib
 import re
@@ -13,28 +14,57 @@ import shutil
 import subprocess
 import sys
 
-FOLDERS = {  # folder: those of ours that it may include besides itself
-    "frame": set(),
-    "render": {"frame"},
-    "reproject": {"frame"},
-    "spatial": {"frame"},
-    "temporal": {"frame", "reproject", "spatial"},
-    "sequences": {"frame", "render", "reproject", "spatial", "temporal"},
-    "tests": {"frame", "render", "reproject", "spatial", "temporal", "sequences"},
+# Rooms: folders, and single headers that stand below the rest of their folder. A file belongs to the
+# longest room that its path starts with, and may include that room, those named here, and whatever
+# these may include.
+ROOMS = {
+    "frame": [],
+    "reproject": ["frame"],
+    "spatial": ["frame"],
+    "spatial/rivals": ["spatial"],
+    "spatial/training": ["spatial/rivals"],
+    "temporal/denoiser.h": ["frame"],
+    "temporal/stage_clock.h": ["temporal/denoiser.h"],
+    "temporal/bases": ["reproject"],
+    "temporal/change": ["spatial", "temporal/bases"],
+    "temporal/samples": ["temporal/bases", "temporal/stage_clock.h"],
+    "temporal/eigen": ["temporal/change", "temporal/samples"],
+    "temporal/baselines": ["spatial/rivals", "temporal/samples"],
+    "temporal": ["temporal/eigen", "temporal/baselines"],
+    "render/scene": ["frame"],
+    "render/loading": ["render/scene"],
+    "render/builtin": ["render/scene"],
+    "render/rays": ["render/scene"],
+    "render/lights": ["render/rays"],
+    "render/paths": ["render/lights"],
+    "render/antialias": ["render/paths"],
+    "render": ["render/antialias", "render/builtin", "render/loading"],
+    "sequences/files": ["frame"],
+    "sequences/runs": ["sequences/files", "render", "temporal"],
+    "sequences/metrics": ["sequences/files"],
+    "sequences/stress": ["sequences/runs"],
+    "sequences/pages": ["sequences/metrics"],
+    "sequences/compare": ["sequences/pages", "sequences/runs"],
+    "sequences/lab": ["sequences/compare", "sequences/stress", "spatial/training"],
+    "sequences/cli": ["sequences/lab"],
+    "tests": ["sequences/cli"],
 }
+FOLDERS = sorted({room.split("/")[0] for room in ROOMS})
 
 THIRD_PARTY = [  # (includes, files that may have them)
     (r"(tbb|oneapi)/", ["frame/tiles.cpp"]),
-    (r"embree\d/", ["render/embree_*"]),
-    (r"assimp/", ["render/scene_file*"]),
-    (r"OpenImageIO/", ["sequences/exr_io.cpp", "sequences/ldr_image.cpp", "render/image_file.cpp"]),
+    (r"embree\d/", ["render/rays/embree_*"]),
+    (r"assimp/", ["render/loading/scene_file*"]),
+    (r"OpenImageIO/", ["sequences/files/exr_io.cpp", "sequences/files/ldr_image.cpp",
+                       "render/loading/image_file.cpp"]),
     (r"hwy/", ["*_simd.cpp"]),
-    (r"CLI/", ["sequences/*"]),
-    (r"nlohmann/", ["sequences/*", "render/scene_file*"]),
+    (r"CLI/", ["sequences/cli/*"]),
+    (r"nlohmann/", ["sequences/*", "render/loading/scene_file*"]),
     (r"xxhash", ["sequences/*"]),
 ]
 
 MAX_LINES = 400
+MAX_SOURCES = 40  # that stand directly in one folder
 INCLUDE = re.compile(r'^\s*#\s*include\s+(?:"([^"]+)"|<([^>]+)>)')
 BANNED_FLAG = re.compile(r"-ffast-math|-Ofast|-march|-funsafe-math")
 
@@ -46,27 +76,50 @@ def cpp_files(root):
                 yield path, path.relative_to(root).as_posix()
 
 
+def room_of(name):
+    """The longest room that `name` starts with, or None."""
+    while name and name not in ROOMS:
+        name = name.rpartition("/")[0]
+    return name or None
+
+
+def reachable(room):
+    """All rooms that `room` may include: itself, and those below it."""
+    found, waiting = set(), [room]
+    while waiting:
+        here = waiting.pop()
+        if here not in found:
+            found.add(here)
+            waiting += ROOMS[here]
+    return found
+
+
 def include_faults(name, lines):
-    folder = name.split("/")[0]
+    room = room_of(name)
+    below = reachable(room) if room else set()
     for number, line in enumerate(lines, 1):
         match = INCLUDE.match(line)
         if not match:
             continue
         ours, theirs = match.groups()
-        if ours:
-            target = ours.split("/")[0]
-            # Highway names a file to itself again in this way.
-            if target not in FOLDERS:
-                yield f'{name}:{number}: "{ours}" does not start at the root of the project'
-            elif target != folder and target not in FOLDERS[folder]:
-                yield f"{name}:{number}: {folder}/ must not include {target}/"
+        if ours and ours.split("/")[0] not in FOLDERS:
+            yield f'{name}:{number}: "{ours}" does not start at the root of the project'
+        elif ours and room_of(ours) not in below:
+            yield f"{name}:{number}: {room}/ must not include {room_of(ours) or ours}/"
         included = ours or theirs
         for pattern, allowed in THIRD_PARTY:
             # Tests may look at files with whatever reads them.
-            if folder == "tests" or not re.match(pattern, included):
+            if room == "tests" or not re.match(pattern, included):
                 continue
             if not any(fnmatch.fnmatch(name, entry) for entry in allowed):
                 yield f"{name}:{number}: <{included}> belongs in {', '.join(allowed)} only"
+
+
+def crowding_faults(names):
+    count = collections.Counter(name.rpartition("/")[0] for name in names)
+    for folder, sources in sorted(count.items()):
+        if sources > MAX_SOURCES:
+            yield f"{folder}:1: {sources} sources in one folder, at most {MAX_SOURCES}"
 
 
 def length_faults(name, lines):
@@ -112,6 +165,7 @@ def faults(root):
         yield from header_faults(name, lines)
     if not names:
         yield f"{root}: no source file found"
+    yield from crowding_faults(names)
     yield from flag_faults(root)
     yield from format_faults(root, names)
 

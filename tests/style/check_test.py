@@ -33,12 +33,18 @@ class CheckTest(unittest.TestCase):
 
     def test_each_fault_is_found(self):
         cases = [
-            ("temporal/x.cpp", '#include "render/scene.h"\n', "temporal/ must not include render/"),
+            ("temporal/x.cpp", '#include "render/scene/scene.h"\n', "temporal/ must not include render/"),
+            ("temporal/bases/x.cpp", '#include "temporal/change/edges.h"\n',
+             "temporal/bases/ must not include temporal/change/"),
+            ("temporal/samples/x.h", '#pragma once\n#include "temporal/methods.h"\n',
+             "temporal/samples/ must not include temporal/"),
+            ("spatial/x.cpp", '#include "spatial/rivals/pyramid.h"\n',
+             "spatial/ must not include spatial/rivals/"),
             ("frame/x.cpp", '#include "spatial/blur.h"\n', "frame/ must not include spatial/"),
             ("spatial/x.cpp", '#include "temporal/mean.h"\n', "spatial/ must not include temporal/"),
             ("frame/x.cpp", '#include "plane.h"\n', "does not start at the root"),
             ("spatial/x.cpp", "#include <tbb/parallel_for.h>\n", "belongs in frame/tiles.cpp only"),
-            ("render/x.cpp", "#include <embree3/rtcore.h>\n", "belongs in render/embree_*"),
+            ("render/x.cpp", "#include <embree3/rtcore.h>\n", "belongs in render/rays/embree_*"),
             ("render/x.cpp", "#include <nlohmann/json.hpp>\n", "belongs in sequences/*"),
             ("spatial/x.cpp", "#include <hwy/highway.h>\n", "belongs in *_simd.cpp only"),
             ("sequences/x.cpp", "#include <OpenImageIO/imageio.h>\n", "belongs in"),
@@ -51,6 +57,15 @@ class CheckTest(unittest.TestCase):
                 found = self.faults_with(name, text)
                 self.assertEqual(len(found), 1, found)
                 self.assertIn(message, found[0])
+
+    def test_a_crowded_folder_is_a_fault(self):
+        with tempfile.TemporaryDirectory() as directory:
+            root = pathlib.Path(directory)
+            (root / "frame").mkdir()
+            for number in range(check.MAX_SOURCES + 1):
+                (root / "frame" / f"{number}.cpp").write_text("\n")
+            found = [f for f in check.faults(root) if "not formatted" not in f]
+            self.assertEqual(found, ["frame:1: 41 sources in one folder, at most 40"])
 
 
 if __name__ == "__main__":

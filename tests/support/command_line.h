@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "frame/tiles.h"
-#include "sequences/cli.h"
+#include "sequences/cli/cli.h"
 
 namespace eigenlight {
 

@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "frame/tiles.h"
-#include "temporal/denoiser.h"
+#include "temporal/methods.h"
 #include "tests/support/analytic_source.h"
 
 namespace eigenlight {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "sequences/compare_page.h"
-#include "sequences/ldr_image.h"
+#include "sequences/compare/compare_page.h"
+#include "sequences/files/ldr_image.h"
 
 namespace eigenlight {
 

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "frame/random.h"
-#include "sequences/output.h"
-#include "sequences/run_log.h"
+#include "sequences/runs/output.h"
+#include "sequences/runs/run_log.h"
 
 namespace eigenlight {
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "render/live_source.h"
-#include "sequences/flythrough.h"
-#include "sequences/scene_source.h"
+#include "sequences/runs/flythrough.h"
+#include "sequences/runs/scene_source.h"
 #include "sequences/stress/eigen_state.h"
 #include "tests/reference/pipeline/eigen_twin.h"
 

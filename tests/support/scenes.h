@@ -13,7 +13,7 @@
 #include "frame/camera.h"
 #include "frame/frame.h"
 #include "render/live_source.h"
-#include "render/scene.h"
+#include "render/scene/scene.h"
 
 namespace eigenlight::test {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "spatial/spatial_filter.h"
+#include "spatial/rivals/spatial_filter.h"
 #include "tests/support/random_frames.h"
 
 namespace eigenlight {

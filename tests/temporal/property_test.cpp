@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "frame/float_traps.h"
-#include "temporal/denoiser.h"
+#include "temporal/methods.h"
 #include "tests/support/denoiser_checks.h"
 #include "tests/support/random_sequence.h"
 

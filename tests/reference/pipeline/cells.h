@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "reproject/taps.h"
-#include "temporal/residual_cells.h"
+#include "temporal/change/residual_cells.h"
 #include "tests/reference/pipeline/correction.h"
 
 namespace eigenlight::twin {

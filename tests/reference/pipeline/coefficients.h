@@ -1,8 +1,8 @@
 // Coefficients and what tiles remember of them, in double.
 #pragma once
 
-#include "temporal/coefficients.h"
-#include "temporal/small_matrix.h"
+#include "temporal/bases/coefficients.h"
+#include "temporal/bases/small_matrix.h"
 #include "tests/reference/pipeline/image.h"
 
 namespace eigenlight::twin {

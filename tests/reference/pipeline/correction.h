@@ -3,8 +3,8 @@
 
 #include <limits>
 
-#include "temporal/correction.h"
-#include "temporal/firefly_bound.h"
+#include "temporal/change/correction.h"
+#include "temporal/samples/firefly_bound.h"
 #include "tests/reference/atrous.h"
 #include "tests/reference/pipeline/coefficients.h"
 

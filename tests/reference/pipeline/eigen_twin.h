@@ -3,8 +3,8 @@
 #pragma once
 
 #include "reproject/surface_history.h"
-#include "temporal/edges.h"
-#include "temporal/eigen_denoiser.h"
+#include "temporal/change/edges.h"
+#include "temporal/eigen/eigen_denoiser.h"
 #include "tests/reference/guided_filter.h"
 #include "tests/reference/pipeline/cells.h"
 #include "tests/reference/pipeline/memory.h"

@@ -1,0 +1,110 @@
+#include "render/loading/image_file.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+#include "frame/float_traps.h"
+
+namespace eigenlight {
+namespace {
+
+using InputPtr = std::unique_ptr<OIIO::ImageInput>;
+
+[[noreturn]] void fail(const std::string& name, const std::string& why) {
+  throw std::runtime_error(fmt::format("{}: cannot read image: {}", name, why));
+}
+
+/// All channels of the first part, converted to `T`, top row first.
+template <typename T>
+std::vector<T> read_pixels(OIIO::ImageInput& input, OIIO::TypeDesc type, const std::string& name) {
+  const OIIO::ImageSpec& spec = input.spec();
+  if (spec.width < 1 || spec.height < 1 || spec.width > kMaxSide || spec.height > kMaxSide) {
+    fail(name,
+         fmt::format("size {}x{}, expected sides in [1, {}]", spec.width, spec.height, kMaxSide));
+  }
+  std::vector<T> pixels(static_cast<std::size_t>(spec.width) *
+                        static_cast<std::size_t>(spec.height) *
+                        static_cast<std::size_t>(spec.nchannels));
+  if (!input.read_image(0, 0, 0, spec.nchannels, type, pixels.data())) {
+    fail(name, input.geterror());
+  }
+  return pixels;
+}
+
+Texture to_texture(OIIO::ImageInput& input, const std::string& name) {
+  const auto pixels = read_pixels<std::uint8_t>(input, OIIO::TypeDesc::UINT8, name);
+  const auto channels = static_cast<std::size_t>(input.spec().nchannels);
+  Texture texture{name, {input.spec().width, input.spec().height}, {}};
+  texture.rgba.resize(texture.extent.pixels() * 4);
+  for (std::size_t i = 0; i < texture.extent.pixels(); ++i) {
+    const std::uint8_t* from = &pixels[i * channels];
+    std::uint8_t* to = &texture.rgba[i * 4];
+    const bool grey = channels < 3;
+    for (std::size_t c = 0; c < 3; ++c) to[c] = from[grey ? 0 : c];
+    const bool alpha = channels == 2 || channels >= 4;
+    to[3] = alpha ? from[grey ? 1 : 3] : std::uint8_t{255};
+  }
+  return texture;
+}
+
+/// Holes are cut by alpha alone: color must not be multiplied by it.
+OIIO::ImageSpec unassociated() {
+  OIIO::ImageSpec config;
+  config["oiio:UnassociatedAlpha"] = 1;
+  return config;
+}
+
+}  // namespace
+
+Texture read_texture(const std::filesystem::path& path) {
+  const FloatTrapsOff threads_of_openimageio_start_here;
+  const OIIO::ImageSpec config = unassociated();
+  const InputPtr input = OIIO::ImageInput::open(path.string(), &config);
+  if (!input) fail(path.string(), OIIO::geterror());
+  return to_texture(*input, path.string());
+}
+
+Texture read_texture(std::span<const std::uint8_t> bytes, const std::string& name) {
+  const FloatTrapsOff threads_of_openimageio_start_here;
+  OIIO::ImageSpec config = unassociated();
+  OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(bytes.data()), bytes.size());
+  // OpenImageIO 2.4 loses the proxy that open() is given beside a configuration.
+  OIIO::Filesystem::IOProxy* proxy = &memory;
+  config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+  const InputPtr input = OIIO::ImageInput::open(name, &config);
+  if (!input) fail(name, OIIO::geterror());
+  return to_texture(*input, name);
+}
+
+Environment read_environment(const std::filesystem::path& path, float scale) {
+  const FloatTrapsOff pixels_may_hold_nan;
+  const std::string name = path.string();
+  const InputPtr input = OIIO::ImageInput::open(name);
+  if (!input) fail(name, OIIO::geterror());
+  const auto channels = static_cast<std::size_t>(input->spec().nchannels);
+  if (channels < 3) fail(name, fmt::format("{} channels, expected 3 (R, G, B)", channels));
+  const auto pixels = read_pixels<float>(*input, OIIO::TypeDesc::FLOAT, name);
+  Environment map{{input->spec().width, input->spec().height}, {}};
+  map.radiance.reserve(map.extent.pixels());
+  for (std::size_t i = 0; i < map.extent.pixels(); ++i) {
+    const float* p = &pixels[i * channels];
+    const glm::vec3 radiance = glm::vec3(p[0], p[1], p[2]) * scale;
+    for (int c = 0; c < 3; ++c) {
+      if (!(radiance[c] >= 0.0f) || std::isinf(radiance[c])) {
+        fail(name,
+             fmt::format("pixel {} holds {}, expected a finite radiance >= 0", i, radiance[c]));
+      }
+    }
+    map.radiance.push_back(radiance);
+  }
+  return map;
+}
+
+}  // namespace eigenlight

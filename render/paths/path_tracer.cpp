@@ -1,0 +1,201 @@
+#include "render/paths/path_tracer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace eigenlight {
+namespace {
+
+constexpr float kPi = std::numbers::pi_v<float>;
+
+// Shadow rays end this fraction short of the light, so as not to meet it: far above the rounding of
+// a distance, far below any gap that matters.
+constexpr float kShort = 1e-4f;
+
+}  // namespace
+
+// False where the direction is under the surface: an interpolated normal leans over that far. Such
+// rays carry nothing, whichever way they are chosen.
+bool PathTracer::sample_ray(const SurfacePoint& point, Sampler& sampler, Bounce& bounce) const {
+  const glm::vec2 u = sampler.next_2d();
+  const float radius = std::sqrt(u.x);
+  const float phi = 2.0f * kPi * u.y;
+  const float height = std::sqrt(1.0f - u.x);
+  const glm::vec3 local(radius * std::cos(phi), radius * std::sin(phi), height);
+  bounce.ray.origin = point.origin;
+  bounce.ray.direction = around(point.normal, local);
+  bounce.pdf = height / kPi;
+  return glm::dot(bounce.ray.direction, point.geometric) > 0.0f && bounce.pdf > 0.0f;
+}
+
+void PathTracer::trace(Bounce& bounce, std::int64_t& rays) const {
+  ++rays;
+  bounce.hit = world_.geometry.find(bounce.ray);
+  Ray rest = bounce.ray;
+  if (bounce.hit) rest.t_max = bounce.hit->t;
+  bounce.shape = world_.lights.intersect(rest);
+  if (bounce.shape) {
+    bounce.hit.reset();
+    rest.t_max = bounce.shape->t;
+  }
+  bounce.tint = world_.geometry.glass_tint(rest);
+}
+
+// Radiance that lights emit against the ray, times the weight against aiming at them.
+glm::vec3 PathTracer::seen(const Bounce& bounce) const {
+  const LightSet& lights = world_.lights;
+  if (bounce.shape) {
+    return power_heuristic(bounce.pdf, lights.pdf(bounce.ray, *bounce.shape)) *
+           bounce.shape->radiance;
+  }
+  if (!bounce.hit) return lights.escaped(bounce.ray.origin, bounce.ray.direction, bounce.pdf);
+  const glm::vec3& emission = world_.surfaces.emission(*bounce.hit);
+  if (emission == glm::vec3(0.0f)) return emission;
+  return power_heuristic(bounce.pdf, lights.pdf(bounce.ray, *bounce.hit)) *
+         lights.emitted(emission, bounce.ray.direction);
+}
+
+// What a ray sees of lights when nothing will be done with the surface that it meets. Where only
+// the sky shines, whether there is a surface is enough, at a third of the cost.
+glm::vec3 PathTracer::look_for_lights(Bounce& bounce, std::int64_t& rays) const {
+  if (!world_.lights.is_visible()) return glm::vec3(0.0f);
+  if (world_.lights.has_visible_surfaces()) {
+    trace(bounce, rays);
+  } else {
+    ++rays;
+    if (world_.geometry.occluded(bounce.ray)) return glm::vec3(0.0f);
+    bounce.hit.reset();
+    bounce.shape.reset();
+    bounce.tint = world_.geometry.glass_tint(bounce.ray);
+  }
+  return bounce.tint * seen(bounce);
+}
+
+glm::vec3 PathTracer::shadowed(const SurfacePoint& point, const LightSample& sample, const Aim& aim,
+                               std::int64_t& rays) const {
+  const float cosine = glm::dot(sample.direction, point.normal);
+  if (!(cosine > 0.0f) || !(glm::dot(sample.direction, point.geometric) > 0.0f)) {
+    return glm::vec3(0.0f);
+  }
+  const Ray ray{point.origin, sample.direction, 0.0f, sample.distance * (1.0f - kShort), aim.quick};
+  ++rays;
+  if (world_.geometry.occluded(ray) || world_.lights.occluded(ray)) return glm::vec3(0.0f);
+  const float weight = power_heuristic(sample.pdf, aim.weight_against * cosine / kPi);
+  return weight * cosine / kPi * sample.value * world_.geometry.glass_tint(ray);
+}
+
+// Light that reaches the point straight from one sun and one local light.
+glm::vec3 PathTracer::aim(const SurfacePoint& point, Sampler& sampler, bool quick,
+                          std::int64_t& rays) const {
+  glm::vec3 sum(0.0f);
+  if (world_.lights.has_suns()) {
+    const auto sample = world_.lights.sample_sun(point.normal, sampler.next_2d());
+    if (sample) sum += shadowed(point, *sample, {0.0f, quick}, rays);  // no other ray finds a sun
+  }
+  if (world_.lights.has_local()) {
+    const float pick = sampler.next_1d();
+    const auto sample = world_.lights.sample_local(point.origin, pick, sampler.next_2d());
+    if (sample) sum += shadowed(point, *sample, {1.0f, quick}, rays);
+  }
+  return sum;
+}
+
+std::uint8_t PathTracer::lit_by(const SurfacePoint& point, std::int64_t& rays) const {
+  const glm::vec2 middle(0.5f);
+  const auto reaches = [&](const std::optional<LightSample>& sample) {
+    if (!sample) return false;
+    const glm::vec3 light = shadowed(point, *sample, {}, rays);
+    return std::max({light.x, light.y, light.z}) > 0.0f;
+  };
+  std::uint8_t lit = 0;
+  if (world_.lights.has_suns() && reaches(world_.lights.sample_sun(point.normal, middle))) lit |= 1;
+  if (world_.lights.has_local() &&
+      reaches(world_.lights.sample_local(point.origin, middle.x, middle))) {
+    lit |= 2;
+  }
+  return lit;
+}
+
+glm::vec3 PathTracer::direct(const SurfacePoint& point, Sampler& sampler,
+                             std::int64_t& rays) const {
+  Bounce bounce;
+  const bool above = sample_ray(point, sampler, bounce);
+  const glm::vec3 sum = aim(point, sampler, false, rays);
+  return above ? sum + look_for_lights(bounce, rays) : sum;
+}
+
+glm::vec3 PathTracer::indirect(const SurfacePoint& point, const Sampler& sampler,
+                               std::int64_t& rays) const {
+  Path path(point, sampler);
+  indirect(std::span<Path>(&path, 1), rays);
+  return path.light;
+}
+
+void PathTracer::indirect(std::span<Path> paths, std::int64_t& rays) const {
+  for (; !paths.empty(); paths = paths.subspan(std::min(paths.size(), kSideBySide))) {
+    std::array<Path*, kSideBySide> alive{};
+    const std::size_t size = std::min(paths.size(), kSideBySide);
+    for (std::size_t i = 0; i < size; ++i) alive[i] = &paths[i];
+    auto end = alive.begin() + static_cast<std::ptrdiff_t>(size);
+    const auto keep = [&](const auto& goes_on) {
+      end = std::remove_if(alive.begin(), end, [&](Path* path) { return !goes_on(*path); });
+    };
+    for (int depth = 0; end != alive.begin(); ++depth) {
+      keep([&](Path& path) { return send(path, depth, rays); });
+      std::for_each(alive.begin(), end, [&](Path* path) { look_up(*path); });
+      keep([&](Path& path) { return arrive(path, depth); });
+      keep([&](Path& path) { return reflect(path, depth, rays); });
+    }
+  }
+}
+
+// One step of a path in four, each of which asks memory for what the next will read. They return
+// whether the path goes on.
+bool PathTracer::send(Path& path, int depth, std::int64_t& rays) const {
+  Bounce& bounce = path.bounce_;
+  if (!sample_ray(path.at, path.sampler, bounce)) return false;
+  bounce.ray.quick = true;
+  if (depth == bounces_) {  // the light that the last surface reflects
+    path.light += path.throughput_ * look_for_lights(bounce, rays);
+    return false;
+  }
+  trace(bounce, rays);
+  return true;
+}
+
+void PathTracer::look_up(Path& path) const {
+  Bounce& bounce = path.bounce_;
+  if (!bounce.hit) return;
+  EmbreeScene::look_up(*bounce.hit);
+  world_.surfaces.prefetch(*bounce.hit);
+}
+
+bool PathTracer::arrive(Path& path, int depth) const {
+  const Bounce& bounce = path.bounce_;
+  path.throughput_ *= bounce.tint;
+  if (depth > 0) path.light += path.throughput_ * seen(bounce);  // at depth 0 it is direct light
+  if (!bounce.hit) return false;
+  const auto [point, texel] = world_.surfaces.bounce_point(bounce.ray, *bounce.hit);
+  path.at = point;
+  path.texel_ = texel;
+  if (texel != nullptr) __builtin_prefetch(texel);
+  return true;
+}
+
+bool PathTracer::reflect(Path& path, int depth, std::int64_t& rays) const {
+  if (path.texel_ != nullptr) path.at.albedo *= TexturePyramid::color(*path.texel_);
+  glm::vec3& throughput = path.throughput_;
+  throughput *= path.at.albedo;
+  path.light += throughput * aim(path.at, path.sampler, true, rays);
+  if (depth == 0) return true;
+  // Russian roulette, from the second bounce on.
+  const float brightest = std::max({throughput.x, throughput.y, throughput.z});
+  const float survival = std::min(1.0f, brightest);
+  if (!(path.sampler.next_1d() < survival)) return false;
+  throughput /= survival;
+  return true;
+}
+
+}  // namespace eigenlight

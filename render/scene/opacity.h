@@ -1,0 +1,41 @@
+// Which triangles of a material with holes need no look at its texture.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "render/scene/scene.h"
+
+namespace eigenlight {
+
+enum class Opacity : std::uint8_t {
+  kSolid,  ///< bilinear_alpha() is nowhere below the cutoff
+  kHole,   ///< everywhere
+  kMixed,  ///< perhaps here and there
+};
+
+/// Summed-area tables (Crow 1984) of one texture at one cutoff.
+class OpacityMap {
+ public:
+  OpacityMap(const Texture& texture, float cutoff);
+
+  /// Of all points between three texture coordinates; kMixed where that is not certain.
+  [[nodiscard]] Opacity between(const std::array<glm::vec2, 3>& uv) const;
+
+ private:
+  struct Counts {
+    std::uint32_t solid = 0, hole = 0;  // texels above and left, that are surely so
+  };
+  struct Span {
+    int first = 0, count = 0;
+  };
+  [[nodiscard]] static Span touched(float low, float high, int size);
+  [[nodiscard]] Counts count(const Span& x, const Span& y) const;  // without wrapping
+
+  Extent extent_;
+  std::vector<Counts> sums_;  // (width + 1) x (height + 1)
+};
+
+}  // namespace eigenlight

@@ -1,0 +1,236 @@
+#include "sequences/cli/compare_command.h"
+
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "frame/tiles.h"
+#include "sequences/cli/interrupt.h"
+#include "sequences/cli/paper_command.h"
+#include "sequences/cli/progress.h"
+#include "sequences/compare/compare_page.h"
+#include "sequences/compare/compare_pictures.h"
+#include "sequences/compare/compare_run.h"
+#include "sequences/files/atomic_file.h"
+#include "sequences/files/file_pattern.h"
+#include "sequences/runs/scene_source.h"
+
+namespace eigenlight {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+// Another build may measure other numbers.
+std::string program_hash() {
+  const std::string program = read_whole_file("/proc/self/exe");
+  return fmt::format("{:016x}", XXH3_64bits(program.data(), program.size()));
+}
+
+Json shared_identity(const ComparePlan& plan) {
+  return {{"program", program_hash()}, {"width", plan.extent.width}, {"height", plan.extent.height},
+          {"bases", plan.bases},       {"bounces", plan.bounces},    {"seed", plan.seed},
+          {"frames", plan.frames},     {"measured", plan.measured}};
+}
+
+Json cell_identity(const ReferenceCache& references, const Contender& contender, int spp) {
+  Json json = {{"references", references.path().filename().string()},
+               {"spp", spp},
+               {"label", contender.label},
+               {"method", contender.method},
+               {"without", contender.without}};
+  if (contender.external) {
+    json["command"] = contender.external->command;
+    json["time"] = contender.external->time_pattern;
+  }
+  return json;
+}
+
+// A scene while it is compared on.
+struct OpenCase {
+  Scene scene;
+  std::uint64_t hash = 0;
+  std::unique_ptr<Animation> animation;
+
+  [[nodiscard]] AnimatedScene animated() const { return {scene, *animation}; }
+};
+
+class CompareJob {
+ public:
+  CompareJob(const CompareSettings& settings, const Console& console)
+      : settings_(settings),
+        console_(console),
+        plan_(make_compare_plan(settings)),
+        interrupt_(settings.quiet ? InterruptGuard::Notice::kSilent
+                                  : InterruptGuard::Notice::kStderr) {
+    set_thread_count(settings.threads);
+  }
+
+  int run() {
+    const CellStore store(plan_.directory / "cells", shared_identity(plan_));
+    std::vector<CaseResults> results;
+    std::vector<PageGallery> galleries;
+    for (const CompareCase& one : plan_.cases) {
+      const OpenCase open = open_case(one);
+      const ReferenceCache references(plan_.cache, identity_of(one, open));
+      CaseResults of_case{one, open.scene.title, open.hash, references.path().string(), {}};
+      if (!complete_references(one, open, references)) return stopped();
+      for (const int spp : plan_.spp) {
+        if (!measure({one, open, references, spp}, store, of_case)) return stopped();
+      }
+      galleries.push_back(compare_gallery(
+          {plan_, references, plan_.directory / "frames" / one.name, open.scene.exposure}));
+      results.push_back(std::move(of_case));
+    }
+    write(results, std::move(galleries));
+    return 0;
+  }
+
+ private:
+  struct Task {
+    const CompareCase& one;
+    const OpenCase& open;
+    const ReferenceCache& references;
+    int spp;
+  };
+
+  void say(const std::string& text) const {
+    if (!settings_.quiet) console_.err << text << '\n' << std::flush;
+  }
+  [[nodiscard]] Progress::Style progress_style() const {
+    if (settings_.quiet) return Progress::Style::kNone;
+    return console_.err_is_terminal ? Progress::Style::kBar : Progress::Style::kLines;
+  }
+  [[nodiscard]] RunControl control(Progress& progress) const {
+    return {[&progress](int frame) { progress.frame_done(frame); },
+            [this] { return interrupt_.interrupted(); }};
+  }
+  [[nodiscard]] OpenCase open_case(const CompareCase& one) const;
+  [[nodiscard]] ReferenceIdentity identity_of(const CompareCase& one, const OpenCase& open) const;
+  [[nodiscard]] bool complete_references(const CompareCase& one, const OpenCase& open,
+                                         const ReferenceCache& references) const;
+  [[nodiscard]] fs::path pictures_of(const Task& task) const;
+  [[nodiscard]] bool has_pictures(const Task& task, const Contender& contender) const;
+  [[nodiscard]] bool measure(const Task& task, const CellStore& store, CaseResults& results) const;
+  [[nodiscard]] bool measure_missing(const Task& task, const std::vector<const Contender*>& missing,
+                                     const CellStore& store) const;
+  void write(const std::vector<CaseResults>& results, std::vector<PageGallery> galleries) const;
+  [[nodiscard]] int stopped() const {
+    say(fmt::format("stopped; what is complete is kept; to go on:\n  {}", console_.command_line));
+    return kInterruptedStatus;
+  }
+
+  const CompareSettings& settings_;
+  const Console& console_;
+  ComparePlan plan_;
+  InterruptGuard interrupt_;
+};
+
+OpenCase CompareJob::open_case(const CompareCase& one) const {
+  std::vector<std::string> notes;
+  OpenCase open;
+  open.scene = open_scene({one.scene, plan_.environment}, notes);
+  for (const std::string& note : notes) say(fmt::format("eigenlight: note: {}", note));
+  open.hash = scene_hash(open.scene);
+  open.animation = make_flythrough(open.scene, one.perturbation, plan_.extent);
+  return open;
+}
+
+ReferenceIdentity CompareJob::identity_of(const CompareCase& one, const OpenCase& open) const {
+  ReferenceIdentity identity{one.name,      open.hash,           one.perturb, plan_.extent,
+                             plan_.bounces, plan_.reference_spp, plan_.seed,  0};
+  RenderOptions options;
+  options.extent = plan_.extent;
+  options.bounces = plan_.bounces;
+  identity.renderer = renderer_hash(open.animated(), options);
+  return identity;
+}
+
+bool CompareJob::complete_references(const CompareCase& one, const OpenCase& open,
+                                     const ReferenceCache& references) const {
+  for (const ReferenceCache::Half half : ReferenceCache::kHalves) {
+    const std::vector<int> missing = references.missing(half, plan_.measured);
+    if (missing.empty()) continue;
+    say(fmt::format("{}: reference {} of 2, {} spp, {} frames", one.name,
+                    half == ReferenceCache::Half::kA ? 1 : 2, plan_.reference_spp, missing.size()));
+    Progress progress(console_.err, progress_style(), 0, missing.size());
+    references.render(half, missing, open.animated(), control(progress));
+    if (interrupt_.interrupted()) return false;
+  }
+  return true;
+}
+
+// Nowhere but at the sample count that is shown.
+fs::path CompareJob::pictures_of(const Task& task) const {
+  return task.spp == plan_.shown_spp() ? plan_.directory / "frames" / task.one.name : fs::path();
+}
+
+bool CompareJob::has_pictures(const Task& task, const Contender& contender) const {
+  const fs::path folder = pictures_of(task);
+  if (folder.empty()) return true;
+  return std::all_of(plan_.measured.begin(), plan_.measured.end(), [&](int frame) {
+    return fs::exists(folder / contender.label / FilePattern(kFramePattern).name(frame));
+  });
+}
+
+bool CompareJob::measure(const Task& task, const CellStore& store, CaseResults& results) const {
+  const auto load = [&](const Contender& contender) {
+    return store.load(cell_identity(task.references, contender, task.spp));
+  };
+  std::vector<const Contender*> missing;
+  for (const Contender& contender : plan_.contenders) {
+    if (!load(contender) || !has_pictures(task, contender)) missing.push_back(&contender);
+  }
+  if (!missing.empty() && !measure_missing(task, missing, store)) return false;
+  for (const Contender& contender : plan_.contenders) {
+    std::optional<Cell> cell = load(contender);
+    if (!cell) throw std::logic_error("a cell that was saved is there");
+    results.cells.push_back(std::move(*cell));
+  }
+  return !interrupt_.interrupted();
+}
+
+bool CompareJob::measure_missing(const Task& task, const std::vector<const Contender*>& missing,
+                                 const CellStore& store) const {
+  say(fmt::format("{}, {} spp: {} methods, {} frames", task.one.name, task.spp, missing.size(),
+                  plan_.frames.size()));
+  Progress progress(console_.err, progress_style(), 0, plan_.frames.size());
+  const CompareGroup group{task.open.animated(),       task.references, task.spp,
+                           task.open.scene.exposure,   missing,         pictures_of(task),
+                           plan_.directory / "scratch"};
+  const auto cells = run_group(plan_, group, control(progress));
+  if (!cells) return false;
+  for (std::size_t i = 0; i < missing.size(); ++i) {
+    store.save(cell_identity(task.references, *missing[i], task.spp), (*cells)[i]);
+  }
+  return true;
+}
+
+void CompareJob::write(const std::vector<CaseResults>& results,
+                       std::vector<PageGallery> galleries) const {
+  const std::string json = to_json(plan_, results).dump(1) + "\n";
+  write_file_atomically(plan_.directory / "results.json", json);
+  write_file_atomically(plan_.directory / "results.csv", to_csv(results));
+  write_file_atomically(plan_.directory / "index.html",
+                        to_html(compare_page(plan_, results, std::move(galleries))));
+  if (settings_.json) {
+    console_.out << json << std::flush;
+  } else if (!settings_.quiet) {
+    console_.out << to_table(plan_, results) << '\n'
+                 << (plan_.directory / "index.html").string() << '\n'
+                 << std::flush;
+  }
+}
+
+}  // namespace
+
+int compare_command(const CompareSettings& settings, const Console& console) {
+  if (!settings.paper.empty()) return paper_command(settings, console);
+  return CompareJob(settings, console).run();
+}
+
+}  // namespace eigenlight

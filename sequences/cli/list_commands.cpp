@@ -1,0 +1,65 @@
+#include "sequences/cli/list_commands.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "render/builtin/builtin_scenes.h"
+#include "sequences/runs/render_plan.h"
+#include "temporal/methods.h"
+
+namespace eigenlight {
+namespace {
+
+struct Row {
+  std::string name, what;
+};
+
+/// One line a row, the texts below each other two spaces to the right of the longest name.
+void list(std::ostream& out, const std::vector<Row>& rows, std::string_view indent = "") {
+  std::size_t width = 0;
+  for (const Row& row : rows) width = std::max(width, row.name.size());
+  for (const Row& row : rows) {
+    out << fmt::format("{}{:<{}}  {}\n", indent, row.name, width, row.what);
+  }
+}
+
+}  // namespace
+
+void list_scenes(std::ostream& out) {
+  std::vector<Row> rows;
+  for (const BuiltinScene& scene : builtin_scenes()) {
+    rows.push_back({std::string(scene.name), std::string(scene.what)});
+  }
+  list(out, rows);
+}
+
+void list_methods(std::ostream& out) {
+  std::vector<Row> rows;
+  for (const Method& method : methods()) {
+    std::string what(method.what);
+    if (!method.paper.empty()) what += fmt::format(" ({})", method.paper);
+    rows.push_back({std::string(method.name), what});
+  }
+  rows.push_back(
+      {std::string(kReferenceMethod),
+       fmt::format("no denoising, {} samples unless --spp says otherwise, seeds of its own",
+                   kReferenceSpp)});
+  list(out, rows);
+}
+
+void list_parts(std::ostream& out) {
+  for (const Method& method : methods()) {
+    if (!method.parts.empty()) out << method.name << '\n';
+    std::vector<Row> rows;
+    for (const Part& part : method.parts) {
+      rows.push_back({std::string(part.name), std::string(part.what)});
+    }
+    list(out, rows, "  ");
+  }
+}
+
+}  // namespace eigenlight

@@ -1,0 +1,184 @@
+#include "sequences/compare/compare_page.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "frame/check.h"
+#include "sequences/files/frame_range.h"
+#include "sequences/files/version.h"
+#include "sequences/metrics/equal_time.h"
+
+namespace eigenlight {
+namespace {
+
+TableCell cell_of(const std::optional<double>& value) {
+  return value ? TableCell(*value) : TableCell();
+}
+
+std::optional<double> figure(const Cell& cell, PixelSet set, Metric metric) {
+  return cell.mean()[static_cast<std::size_t>(set)][metric];
+}
+
+PagePlot error_against_time(const ComparePlan& plan, const CaseResults& results) {
+  PagePlot plot{"Error against time",
+                "rings: no other point is both faster and better",
+                {"CPU time of rendering and denoising, ms a frame", true},
+                {"relMSE", true},
+                {}};
+  std::vector<CurvePoint> all;
+  for (const Contender& contender : plan.contenders) {
+    PlotSeries series{contender.label, {}};
+    for (const Cell* cell : results.curve(contender.label)) {
+      const auto relmse = figure(*cell, PixelSet::kSurface, Metric::kRelmse);
+      // What has no place in log-log cannot stand on the front either.
+      if (!relmse || *relmse <= 0.0) continue;
+      all.push_back({cell->total_ms(), *relmse});
+      series.points.push_back({cell->total_ms(), *relmse, fmt::format("{} spp", cell->spp)});
+    }
+    plot.series.push_back(std::move(series));
+  }
+  const std::vector<bool> front = pareto_front(all);
+  std::size_t i = 0;
+  for (PlotSeries& series : plot.series) {
+    for (PlotPoint& point : series.points) point.is_on_front = front[i++];
+  }
+  return plot;
+}
+
+PagePlot over_frames(const ComparePlan& plan, const CaseResults& results, Metric metric) {
+  const bool is_relmse = metric == Metric::kRelmse;
+  PagePlot plot{is_relmse ? "Error over the frames" : "Temporal error over the frames",
+                fmt::format("{} spp", plan.shown_spp()),
+                {"frame"},
+                {is_relmse ? "relMSE" : "mean squared change of error", true},
+                {}};
+  plot.is_over_frames = true;
+  for (const Contender& contender : plan.contenders) {
+    PlotSeries series{contender.label, {}};
+    const Cell* cell = results.find(contender.label, plan.shown_spp());
+    for (const FrameFigures& frame : cell->frames) {
+      const auto value = frame[PixelSet::kSurface][metric];
+      if (value) series.points.push_back({static_cast<double>(frame.frame), *value});
+    }
+    plot.series.push_back(std::move(series));
+  }
+  return plot;
+}
+
+PageTable figures_table(const ComparePlan& plan, const CaseResults& results) {
+  using Best = TableColumn::Best;
+  const EqualTime equal = equal_time(plan, results);
+  PageTable table{
+      fmt::format("{} spp, means over frames {}", plan.shown_spp(),
+                  format_frame_range(plan.measured)),
+      fmt::format(
+          "Best in bold. Young pixels: fewer than {} frames of history. Time: CPU, a frame; "
+          "rendering counts the further samples that a method asks for. Error at equal time "
+          "is read off the plot, between measured points only. Memory: {}.",
+          kYoungAge, kMemoryNote),
+      "method",
+      {{"relMSE", Best::kLowest},
+       {"temporal error", Best::kLowest},
+       {"PSNR, dB", Best::kHighest},
+       {"SSIM", Best::kHighest},
+       {"relMSE, young", Best::kLowest},
+       {"relMSE, old", Best::kLowest},
+       {"render, ms", Best::kLowest},
+       {"denoise, ms", Best::kLowest},
+       {"extra spp", Best::kNone},
+       {"memory, MB", Best::kNone},
+       {fmt::format("relMSE at {:.4g} ms", equal.ms), Best::kLowest}},
+      {}};
+  for (const Contender& contender : plan.contenders) {
+    const Cell& cell = *results.find(contender.label, plan.shown_spp());
+    const auto all = [&](Metric m) { return cell_of(figure(cell, PixelSet::kSurface, m)); };
+    table.rows.push_back(
+        {contender.label,
+         {all(Metric::kRelmse), all(Metric::kTemporalError), all(Metric::kPsnr), all(Metric::kSsim),
+          cell_of(figure(cell, PixelSet::kYoung, Metric::kRelmse)),
+          cell_of(figure(cell, PixelSet::kOld, Metric::kRelmse)), cell.render_ms, cell.denoise_ms,
+          cell.extra_spp, cell.memory_mb, cell_of(equal.relmse.at(contender.label))}});
+  }
+  return table;
+}
+
+TableCell ratio(const TableCell& of, const TableCell& to) {
+  const auto* a = std::get_if<double>(&of);
+  const auto* b = std::get_if<double>(&to);
+  return a && b && *b > 0.0 ? TableCell(*a / *b) : TableCell();
+}
+
+// A row for a method with all its parts, and one without each.
+void add_ablation(const ComparePlan& plan, const CaseResults& results, PageSection& section) {
+  PageTable table{fmt::format("What each part is worth, {} spp", plan.shown_spp()),
+                  "Factors are of the method with all its parts: above 1 without a part, it lowers "
+                  "error or saves time.",
+                  "method",
+                  {{"relMSE"},
+                   {"factor"},
+                   {"temporal error"},
+                   {"factor"},
+                   {"render, ms"},
+                   {"factor"},
+                   {"denoise, ms"},
+                   {"factor"}},
+                  {}};
+  const auto add_row = [&](const std::string& label, const Cell& whole) {
+    const Cell& cell = *results.find(label, plan.shown_spp());
+    TableRow row{label, {}};
+    const auto add = [&](const TableCell& value, const TableCell& all) {
+      row.cells.push_back(value);
+      row.cells.push_back(ratio(value, all));
+    };
+    for (const Metric m : {Metric::kRelmse, Metric::kTemporalError}) {
+      add(cell_of(figure(cell, PixelSet::kSurface, m)),
+          cell_of(figure(whole, PixelSet::kSurface, m)));
+    }
+    add(cell.render_ms, whole.render_ms);
+    add(cell.denoise_ms, whole.denoise_ms);
+    table.rows.push_back(std::move(row));
+  };
+  for (const Contender& contender : plan.contenders) {
+    if (contender.without.empty()) continue;
+    const Cell& whole = *results.find(contender.method, plan.shown_spp());
+    if (table.rows.empty()) add_row(contender.method, whole);
+    add_row(contender.label, whole);
+  }
+  if (!table.rows.empty()) section.tables.push_back(std::move(table));
+}
+
+}  // namespace
+
+Page compare_page(const ComparePlan& plan, const std::vector<CaseResults>& results,
+                  std::vector<PageGallery> galleries) {
+  EL_CHECK(galleries.size() == results.size(), "{} galleries for {} scenes", galleries.size(),
+           results.size());
+  const Machine machine = this_machine();
+  Page page;
+  page.title = "Denoisers, run time against error";
+  page.subtitle = fmt::format(
+      "{} × {} pixels, frames {} after {} of history; indirect light times albedo, against two "
+      "references of {} samples each, so that their noise drops out",
+      plan.extent.width, plan.extent.height, format_frame_range(plan.measured),
+      plan.frames.size() - plan.measured.size(), plan.reference_spp);
+  page.summary = {{"processor", fmt::format("{}, {} cores", machine.processor, machine.cores)},
+                  {"software", program_version() + ", " + machine.compiler},
+                  {"seed", fmt::format("{}", plan.seed)},
+                  {"bounces", fmt::format("{}", plan.bounces)},
+                  {"bases", fmt::format("up to {}", plan.bases)}};
+  for (const Contender& contender : plan.contenders) page.names.push_back(contender.label);
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    PageSection section{results[i].scene.name, results[i].title, {}, {}, {}};
+    section.plots = {error_against_time(plan, results[i]),
+                     over_frames(plan, results[i], Metric::kRelmse),
+                     over_frames(plan, results[i], Metric::kTemporalError)};
+    section.tables = {figures_table(plan, results[i])};
+    add_ablation(plan, results[i], section);
+    section.galleries = {std::move(galleries[i])};
+    page.sections.push_back(std::move(section));
+  }
+  return page;
+}
+
+}  // namespace eigenlight

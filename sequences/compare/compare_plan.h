@@ -1,0 +1,80 @@
+// What `eigenlight compare` compares, as given and as checked.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "frame/plane.h"
+#include "sequences/compare/external_method.h"
+#include "sequences/runs/flythrough.h"
+
+namespace eigenlight {
+
+/// As a user gives it.
+struct CompareSettings {
+  std::vector<std::string> scenes;
+  std::string methods;  ///< with commas; empty: all
+  std::string spp = "1,2,3,4,8,16";
+  std::string frames = "40-59";
+  int warmup = 40;
+  std::string size = "640x360";
+  int bases = 3;
+  int bounces = 3;
+  std::int64_t seed = 0;
+  std::string perturb = "none";  ///< with commas
+  bool environment = false;
+  int reference_spp = 1024;
+  std::string cache = "out/references";
+  std::vector<std::string> external, external_time;
+  std::optional<double> equal_time;  ///< ms a frame
+  bool ablate = false;
+  std::string paper;  ///< not empty: rerun it; `size` and `frames` are then empty if not given
+  std::string directory;
+  int threads = 0;
+  bool quiet = false, json = false;
+};
+
+/// One column of the comparison: a method of ours, perhaps without one of its parts, or a program.
+struct Contender {
+  std::string label;  ///< unique, can be part of a file name
+  std::string method;
+  std::string without;  ///< a part that is off, or empty
+  std::optional<ExternalMethod> external;
+};
+
+/// One scene under one perturbation.
+struct CompareCase {
+  std::string name;   ///< unique, can be part of a file name: `atrium`, `atrium-lights`
+  std::string scene;  ///< as given
+  std::string perturb;
+  Perturbation perturbation = Perturbation::kNone;
+};
+
+struct ComparePlan {
+  std::vector<CompareCase> cases;
+  std::vector<Contender> contenders;
+  std::vector<int> spp;       ///< ascending
+  std::vector<int> measured;  ///< frames without a gap, ascending
+  std::vector<int> frames;    ///< those before them for history, and the measured ones
+  Extent extent;
+  int bases = 3, bounces = 3;
+  std::uint32_t seed = 0;
+  bool environment = false;
+  int reference_spp = 0;  ///< of each of the two references
+  std::optional<double> equal_time;
+  std::filesystem::path cache, directory;
+
+  /// The sample count that pictures and tables are of: 3, the default of `eigenlight render`, else
+  /// the one next to it.
+  [[nodiscard]] int shown_spp() const;
+  /// The contender that others are measured by: `eigenlight`, else the first.
+  [[nodiscard]] const Contender& ours() const;
+};
+
+/// Throws std::invalid_argument naming the option, what was given and what was expected.
+[[nodiscard]] ComparePlan make_compare_plan(const CompareSettings& settings);
+
+}  // namespace eigenlight

@@ -1,0 +1,289 @@
+#include "sequences/compare/compare_run.h"
+
+#include <fmt/format.h>
+#include <malloc.h>
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "sequences/compare/compare_judge.h"
+#include "sequences/compare/shared_source.h"
+#include "sequences/files/compose.h"
+#include "sequences/runs/output.h"
+#include "temporal/methods.h"
+
+namespace eigenlight {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Bytes in use on the heap, large blocks with mappings of their own included.
+double heap_bytes() {
+  const struct mallinfo2 info = ::mallinfo2();
+  return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
+}
+
+MetricOptions metric_options(const CompareGroup& group) {
+  MetricOptions options;
+  options.exposure = group.exposure;
+  return options;
+}
+
+fs::path make_folder(const fs::path& path) {
+  fs::create_directories(path);
+  return path;
+}
+
+// One of our own methods.
+class LiveEntry {
+ public:
+  LiveEntry(const ComparePlan& plan, const CompareGroup& group, const Contender& contender)
+      : method_(contender.method),
+        options_{plan.extent, plan.bases, {}},
+        judge_(metric_options(group)) {
+    cell_.contender = contender.label;
+    cell_.spp = group.spp;
+    if (!contender.without.empty()) options_.without = {contender.without};
+    restart();
+    if (group.pictures.empty()) return;
+    writer_.emplace(make_folder(group.pictures / contender.label),
+                    std::vector<Layer>{Layer::kIndirect}, std::vector<ExrAttribute>{});
+  }
+
+  // A method that reads ahead takes no part in shared frames from its first turn on.
+  void take_turn(SharedSource& source) {
+    if (reads_ahead_) return;
+    Turn turn(source);
+    step(turn);
+    reads_ahead_ = turn.was_read_ahead();
+  }
+  void step(FrameSource& source) {
+    const double before = heap_bytes();
+    output_ = denoiser_->step(source);
+    note_growth(before);
+  }
+  [[nodiscard]] bool reads_ahead() const { return reads_ahead_; }
+  void restart() {
+    denoiser_.reset();
+    held_ = peak_ = 0.0;
+    const double before = heap_bytes();
+    denoiser_ = make_denoiser(method_, options_);
+    note_growth(before);
+  }
+  // Of the frame of the last step.
+  void judge(const JudgedFrame& truth, const StageTime& rendering) {
+    const Frame& frame = denoiser_->frame();
+    const FrameReport& report = denoiser_->report();
+    cell_.render_ms += rendering.cpu_ms + report[Stage::kResample].cpu_ms;
+    for (std::size_t s = 0; s < report.time.size(); ++s) {
+      const auto stage = static_cast<Stage>(s);
+      if (stage != Stage::kSource && stage != Stage::kResample) {
+        cell_.denoise_ms += report[stage].cpu_ms;
+      }
+    }
+    cell_.extra_spp += static_cast<double>(report.extra_samples) /
+                       static_cast<double>(std::max<std::int64_t>(report.surface_pixels, 1));
+    if (writer_) writer_->write({frame, *output_, denoiser_->age()});
+    Planes<3> light;
+    modulate(frame.surface.albedo, *output_, light);
+    judge_.add(truth, std::move(light));
+  }
+  [[nodiscard]] Cell finish() && {
+    const auto count = static_cast<double>(judge_.frames().size());
+    cell_.render_ms /= count;
+    cell_.denoise_ms /= count;
+    cell_.extra_spp /= count;
+    cell_.memory_mb = peak_ * 1e-6;
+    cell_.frames = judge_.frames();
+    cell_.bad_pixels = judge_.bad_pixels();
+    return std::move(cell_);
+  }
+
+ private:
+  // Others allocate in between, so growth is added up over this method's own turns.
+  void note_growth(double before) {
+    held_ += heap_bytes() - before;
+    peak_ = std::max(peak_, held_);
+  }
+
+  std::string method_;
+  DenoiserOptions options_;
+  std::unique_ptr<Denoiser> denoiser_;
+  const Planes<3>* output_ = nullptr;
+  bool reads_ahead_ = false;
+  Judge judge_;
+  std::optional<FrameWriter> writer_;
+  Cell cell_;
+  double held_ = 0.0, peak_ = 0.0;
+};
+
+// A program.
+class ExternalEntry {
+ public:
+  ExternalEntry(const ComparePlan& plan, const CompareGroup& group, const Contender& contender)
+      : run_(*contender.external, {plan.frames, plan.measured},
+             make_folder(group.scratch / contender.label)),
+        judge_(metric_options(group)),
+        extent_(plan.extent) {
+    cell_.contender = contender.label;
+    cell_.spp = group.spp;
+    if (!group.pictures.empty()) pictures_ = make_folder(group.pictures / contender.label);
+  }
+
+  void add(const Frame& frame) const { run_.add(frame); }
+  [[nodiscard]] bool run(const std::function<bool()>& stops) {
+    ExternalCost cost;
+    if (!run_.run(stops, cost)) return false;
+    cell_.denoise_ms = cost.ms;
+    cell_.memory_mb = cost.peak_mb;
+    return true;
+  }
+  void judge(const JudgedFrame& truth) {
+    judge_.add(truth, run_.output(truth.frame, extent_));
+    if (pictures_.empty()) return;
+    fs::copy_file(run_.output_path(truth.frame),
+                  pictures_ / FilePattern(kFramePattern).name(truth.frame),
+                  fs::copy_options::overwrite_existing);
+  }
+  [[nodiscard]] Cell finish(double render_ms) && {
+    cell_.render_ms = render_ms;
+    cell_.frames = judge_.frames();
+    cell_.bad_pixels = judge_.bad_pixels();
+    return std::move(cell_);
+  }
+
+ private:
+  ExternalRun run_;
+  Judge judge_;
+  Extent extent_;
+  fs::path pictures_;
+  Cell cell_;
+};
+
+// Removes the scratch directory however the run ends.
+class Scratch {
+ public:
+  explicit Scratch(fs::path path) : path_(std::move(path)) {
+    std::error_code error;
+    fs::remove_all(path_, error);
+  }
+  ~Scratch() {
+    std::error_code error;
+    fs::remove_all(path_, error);
+  }
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+
+ private:
+  fs::path path_;
+};
+
+class GroupRun {
+ public:
+  GroupRun(const ComparePlan& plan, const CompareGroup& group)
+      : plan_(plan),
+        group_(group),
+        scratch_(group.scratch),
+        ages_(make_denoiser("mean", {plan.extent, plan.bases})) {
+    for (const Contender* contender : group.contenders) {
+      if (contender->external) {
+        external_.push_back(std::make_unique<ExternalEntry>(plan, group, *contender));
+      } else {
+        live_.push_back(std::make_unique<LiveEntry>(plan, group, *contender));
+      }
+    }
+  }
+
+  [[nodiscard]] bool run(const RunControl& control) {
+    LiveSource live = open_source();
+    SharedSource source(live);
+    while (source.render()) {
+      take(source);
+      control.frame_done(source.frame().index);
+      if (control.stops()) return false;
+    }
+    for (const auto& entry : live_) {
+      if (entry->reads_ahead() && !run_alone(*entry, control)) return false;
+    }
+    for (const auto& entry : external_) {
+      if (!entry->run(control.stops)) return false;
+      for (std::size_t i = 0; i < plan_.measured.size(); ++i) entry->judge(truth(i));
+    }
+    return true;
+  }
+  // In the order of the contenders.
+  [[nodiscard]] std::vector<Cell> finish() && {
+    std::vector<Cell> cells;
+    auto live = live_.begin();
+    auto external = external_.begin();
+    const double render_ms = render_ms_ / static_cast<double>(plan_.measured.size());
+    for (const Contender* contender : group_.contenders) {
+      cells.push_back(contender->external ? std::move(**external++).finish(render_ms)
+                                          : std::move(**live++).finish());
+    }
+    return cells;
+  }
+
+ private:
+  [[nodiscard]] LiveSource open_source() const {
+    RenderOptions options;
+    options.extent = plan_.extent;
+    options.spp = group_.spp;
+    options.bounces = plan_.bounces;
+    options.seed = plan_.seed;
+    return {group_.animated.scene, group_.animated.animation, options, plan_.frames};
+  }
+  // The same bits from a source of its own; time of rendering is that of the shared frames.
+  [[nodiscard]] bool run_alone(LiveEntry& entry, const RunControl& control) const {
+    LiveSource source = open_source();
+    entry.restart();
+    const std::size_t warmup = plan_.frames.size() - plan_.measured.size();
+    for (std::size_t i = 0; i < plan_.frames.size(); ++i) {
+      entry.step(source);
+      if (control.stops()) return false;
+      if (i >= warmup) entry.judge(truth(i - warmup), render_times_[i - warmup]);
+    }
+    return true;
+  }
+  void take(SharedSource& source) {
+    (void)ages_->step(source);
+    for (const auto& entry : live_) entry->take_turn(source);
+    for (const auto& entry : external_) entry->add(source.frame());
+    const int frame = source.frame().index;
+    if (frame < plan_.measured.front()) return;
+    render_ms_ += source.render_time().cpu_ms;
+    render_times_.push_back(source.render_time());
+    bits_.push_back(surface_bits(source.frame().surface.id, ages_->age()));
+    const JudgedFrame judged = truth(bits_.size() - 1);
+    for (const auto& entry : live_) {
+      if (!entry->reads_ahead()) entry->judge(judged, source.render_time());
+    }
+  }
+  [[nodiscard]] JudgedFrame truth(std::size_t i) const {
+    const int frame = plan_.measured[i];
+    return {frame, group_.references.load(ReferenceCache::Half::kA, frame),
+            group_.references.load(ReferenceCache::Half::kB, frame), bits_[i].clone()};
+  }
+
+  const ComparePlan& plan_;
+  const CompareGroup& group_;
+  Scratch scratch_;
+  std::unique_ptr<Denoiser> ages_;
+  std::vector<std::unique_ptr<LiveEntry>> live_;
+  std::vector<std::unique_ptr<ExternalEntry>> external_;
+  std::vector<Plane<std::uint8_t>> bits_;  // of each measured frame
+  std::vector<StageTime> render_times_;    // and what they took to render
+  double render_ms_ = 0.0;
+};
+
+}  // namespace
+
+std::optional<std::vector<Cell>> run_group(const ComparePlan& plan, const CompareGroup& group,
+                                           const RunControl& control) {
+  GroupRun run(plan, group);
+  if (!run.run(control)) return std::nullopt;
+  return std::move(run).finish();
+}
+
+}  // namespace eigenlight

@@ -1,0 +1,130 @@
+#include "sequences/compare/reference_cache.h"
+
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "sequences/files/atomic_file.h"
+#include "sequences/files/compose.h"
+#include "sequences/files/exr_io.h"
+#include "sequences/files/file_pattern.h"
+
+namespace eigenlight {
+namespace {
+
+// The upper half of all seeds belongs to references (render_plan.cpp); of these, those of A are
+// even and those of B odd.
+constexpr std::uint32_t kReferenceSeeds = 0x80000000U;
+
+std::string describe(const ReferenceIdentity& identity) {
+  const nlohmann::ordered_json json{{"scene", identity.scene},
+                                    {"scene_hash", fmt::format("{:016x}", identity.scene_hash)},
+                                    {"perturb", identity.perturb},
+                                    {"width", identity.extent.width},
+                                    {"height", identity.extent.height},
+                                    {"bounces", identity.bounces},
+                                    {"spp", identity.spp},
+                                    {"seed", identity.seed},
+                                    {"renderer", fmt::format("{:016x}", identity.renderer)}};
+  return json.dump(2) + "\n";
+}
+
+std::string directory_name(const ReferenceIdentity& identity, const std::string& description) {
+  const std::uint64_t hash = XXH3_64bits(description.data(), description.size());
+  return fmt::format("{}-{}x{}-{}spp-{:016x}", identity.scene, identity.extent.width,
+                     identity.extent.height, identity.spp, hash);
+}
+
+void make_directory(const std::filesystem::path& path) {
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (std::filesystem::is_directory(path)) return;
+  throw std::runtime_error(fmt::format("{}: cannot make the directory: {}", path.string(),
+                                       error ? error.message() : "Not a directory"));
+}
+
+std::uint64_t hash_rows(const Planes<3>& planes) {
+  const std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state(XXH3_createState(),
+                                                                       XXH3_freeState);
+  XXH3_64bits_reset(state.get());
+  for (const Plane<float>& plane : planes) {
+    for (int y = 0; y < plane.height(); ++y) {
+      const auto bytes = static_cast<std::size_t>(plane.width()) * sizeof(float);
+      XXH3_64bits_update(state.get(), plane.row(y), bytes);
+    }
+  }
+  return XXH3_64bits_digest(state.get());
+}
+
+}  // namespace
+
+std::uint64_t renderer_hash(const AnimatedScene& animated, const RenderOptions& options) {
+  RenderOptions probe = options;
+  probe.spp = 1;
+  probe.direct_spp = 0;
+  LiveSource source(animated.scene, animated.animation, probe, {0});
+  Frame frame;
+  if (!source.next(frame)) throw std::logic_error("a source of one frame has one");
+  Planes<3> light;
+  modulate(frame.surface.albedo, frame.indirect, light);
+  return hash_rows(light);
+}
+
+ReferenceCache::ReferenceCache(const std::filesystem::path& root, const ReferenceIdentity& identity)
+    : identity_(identity) {
+  const std::string description = describe(identity);
+  path_ = root / directory_name(identity, description);
+  make_directory(path_ / "a");
+  make_directory(path_ / "b");
+  write_file_atomically(path_ / "reference.json", description);
+}
+
+std::filesystem::path ReferenceCache::file(Half half, int frame) const {
+  return path_ / (half == Half::kA ? "a" : "b") / FilePattern(kFramePattern).name(frame);
+}
+
+std::vector<int> ReferenceCache::missing(Half half, const std::vector<int>& frames) const {
+  std::vector<int> absent;
+  for (const int frame : frames) {
+    if (!std::filesystem::exists(file(half, frame))) absent.push_back(frame);
+  }
+  return absent;
+}
+
+void ReferenceCache::render(Half half, const std::vector<int>& frames,
+                            const AnimatedScene& animated, const RunControl& control) const {
+  RenderOptions options;
+  options.extent = identity_.extent;
+  options.spp = identity_.spp;
+  options.direct_spp = 0;  // direct light is not kept
+  options.bounces = identity_.bounces;
+  options.seed = kReferenceSeeds | (2 * identity_.seed + (half == Half::kB ? 1U : 0U));
+  LiveSource source(animated.scene, animated.animation, options, frames);
+  Frame frame;
+  Planes<3> light;
+  while (source.next(frame)) {
+    modulate(frame.surface.albedo, frame.indirect, light);
+    const ExrChannel channels[] = {{"indirect.R", ExrType::kFloat, &light[0]},
+                                   {"indirect.G", ExrType::kFloat, &light[1]},
+                                   {"indirect.B", ExrType::kFloat, &light[2]},
+                                   {"id", ExrType::kUint, &frame.surface.id}};
+    write_exr(file(half, frame.index), channels, {});
+    control.frame_done(frame.index);
+    if (control.stops()) return;
+  }
+}
+
+Planes<3> ReferenceCache::load(Half half, int frame) const {
+  const std::filesystem::path path = file(half, frame);
+  Planes<3> planes = ExrReader(path).read_planes<3>("indirect");
+  const Extent size = planes[0].extent();
+  if (size == identity_.extent) return planes;
+  throw std::runtime_error(fmt::format("{} is {}x{}, expected {}x{}", path.string(), size.width,
+                                       size.height, identity_.extent.width,
+                                       identity_.extent.height));
+}
+
+}  // namespace eigenlight

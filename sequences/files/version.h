@@ -1,0 +1,11 @@
+// Which program wrote a file.
+#pragma once
+
+#include <string>
+
+namespace eigenlight {
+
+/// "eigenlight" and the version, e.g. "eigenlight 0.1.0".
+[[nodiscard]] std::string program_version();
+
+}  // namespace eigenlight

@@ -1,0 +1,11 @@
+// The parts of rerunning Chiu 2012; each adds its claims and sections.
+#pragma once
+
+#include "sequences/lab/paper.h"
+
+namespace eigenlight {
+
+void chiu_times(const PaperRun& run, PaperReport& report);   ///< Table 1, Fig. 3
+void chiu_errors(const PaperRun& run, PaperReport& report);  ///< Fig. 5
+
+}  // namespace eigenlight

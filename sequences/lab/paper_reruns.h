@@ -1,0 +1,14 @@
+// The papers whose claims are measured again: each by its own file, or files of its name, and in
+// papers() (paper.cpp) by one line.
+#pragma once
+
+#include "sequences/lab/paper.h"
+
+namespace eigenlight {
+
+[[nodiscard]] Paper chen2012();     ///< Tables 1 and 2, Fig. 5, 7, 10 and 15
+[[nodiscard]] Paper bauszat2011();  ///< Tables 1 and 2, Fig. 5 and 8
+[[nodiscard]] Paper chiu2012();     ///< Table 1, Fig. 3 and 5
+[[nodiscard]] Paper xu2024();       ///< Fig. 4, 6 and 8-12, Table 2
+
+}  // namespace eigenlight

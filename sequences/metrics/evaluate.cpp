@@ -1,0 +1,197 @@
+#include "sequences/metrics/evaluate.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+#include "sequences/files/file_pattern.h"
+#include "sequences/files/frame_range.h"
+#include "sequences/files/ldr_image.h"
+#include "sequences/metrics/evaluate_images.h"
+
+namespace eigenlight {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The files of one sequence by frame number, or one file, which counts as frame 0.
+class Sequence {
+ public:
+  explicit Sequence(const std::string& text) : text_(text), name_(fs::path(text).filename()) {
+    if (name_.find_first_of("#@%") != std::string::npos) pattern_.emplace(name_);
+  }
+  [[nodiscard]] bool is_single() const { return !pattern_; }
+  [[nodiscard]] const std::string& text() const { return text_; }
+  [[nodiscard]] fs::path path(int frame) const {
+    return pattern_ ? fs::path(text_).replace_filename(pattern_->name(frame)) : fs::path(text_);
+  }
+  void add_frames(std::set<int>& frames) const {
+    if (!pattern_) {
+      frames.insert(0);
+      return;
+    }
+    const fs::path parent = fs::path(text_).parent_path();
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(parent.empty() ? "." : parent, error)) {
+      if (const auto frame = pattern_->frame(entry.path().filename().string())) {
+        frames.insert(*frame);
+      }
+    }
+  }
+
+ private:
+  std::string text_, name_;
+  std::optional<FilePattern> pattern_;
+};
+
+std::vector<Sequence> sequences_of(const EvaluateOptions& options) {
+  std::vector<Sequence> sequences{Sequence(options.test), Sequence(options.reference)};
+  if (!options.reference_b.empty()) sequences.emplace_back(options.reference_b);
+  for (const Sequence& sequence : sequences) {
+    EL_CHECK(sequence.is_single() == sequences.front().is_single(),
+             "'{}' is one image and '{}' is a sequence", options.test, sequence.text());
+    EL_CHECK(is_ldr_name(sequence.text()) == is_ldr_name(options.test),
+             "'{}' and '{}': an 8-bit picture compares with 8-bit pictures only", options.test,
+             sequence.text());
+  }
+  EL_CHECK(!options.reference_b.empty() ? !options.metrics.reference_noise.has_value() : true,
+           "two references measure their noise themselves: leave the reference noise out");
+  EL_CHECK(options.reference_b.empty() || options.reference_b != options.reference,
+           "'{}' is named as both references, which must be independent", options.reference);
+  return sequences;
+}
+
+std::vector<int> frames_of(const EvaluateOptions& options, const std::vector<Sequence>& sequences) {
+  if (!options.frames.empty()) {
+    EL_CHECK(!sequences.front().is_single(), "frames {}: '{}' is one image", options.frames,
+             options.test);
+    return parse_frame_range(options.frames);
+  }
+  std::set<int> found;
+  for (const Sequence& sequence : sequences) sequence.add_frames(found);
+  if (found.empty()) {
+    throw std::runtime_error(fmt::format("{}: no such files", options.test));
+  }
+  return {found.begin(), found.end()};
+}
+
+// Reason by frame, for frames of which a file is missing.
+std::map<int, std::string> missing_files(const std::vector<int>& frames,
+                                         const std::vector<Sequence>& sequences) {
+  std::map<int, std::string> missing;
+  for (const int frame : frames) {
+    for (const Sequence& sequence : sequences) {
+      std::error_code error;
+      if (fs::exists(sequence.path(frame), error)) continue;
+      missing.emplace(frame, fmt::format("{}: no such file", sequence.path(frame).string()));
+    }
+  }
+  return missing;
+}
+
+[[noreturn]] void fail_missing(const std::map<int, std::string>& missing, std::size_t frames) {
+  std::vector<int> numbers;
+  for (const auto& [frame, reason] : missing) numbers.push_back(frame);
+  throw std::runtime_error(fmt::format("{} ({} of {} frames are incomplete: {})",
+                                       missing.begin()->second, missing.size(), frames,
+                                       format_frame_range(numbers)));
+}
+
+FramePaths paths_of(int frame, const std::vector<Sequence>& sequences) {
+  FramePaths paths{sequences[0].path(frame), sequences[1].path(frame), {}};
+  if (sequences.size() > 2) paths.reference_b = sequences[2].path(frame);
+  return paths;
+}
+
+[[noreturn]] void fail_without_step(int step) {
+  throw std::runtime_error(
+      fmt::format("step {0}: expected mean light of the reference to change by {1:.0f} % or more "
+                  "between frames {2} and {0}, both measured",
+                  step, 100.0 * kLeastStep, step - 1));
+}
+
+std::vector<LightLevel> light_levels(const std::vector<FrameFigures>& frames) {
+  std::vector<LightLevel> levels;
+  for (const FrameFigures& frame : frames) {
+    const Figures& figures = frame[PixelSet::kSurface];
+    if (figures.pixels == 0) continue;
+    levels.push_back({frame.frame, figures[Metric::kLight].value(),
+                      figures[Metric::kReferenceLight].value(), figures[Metric::kRelmse].value()});
+  }
+  return levels;
+}
+
+// Reads and measures frame after frame.
+class Evaluator {
+ public:
+  explicit Evaluator(const EvaluateOptions& options)
+      : options_(options), metrics_(options.metrics) {
+    result_.metrics = options.metrics;
+    result_.step = options.step;
+  }
+
+  void measure(int frame, const FramePaths& paths) {
+    LoadedFrame loaded = load_frame(frame, paths, options_);
+    if (!loaded.bad.empty()) {
+      if (!options_.skips_bad) throw std::runtime_error(loaded.bad);
+      result_.bad_pixels += loaded.bad_pixels;
+    }
+    if (!result_.step && result_.frames.empty()) result_.step = loaded.step;
+    loaded.images.follows = follows_;
+    result_.frames.push_back(metrics_.add(std::move(loaded.images)));
+    result_.surface_from = loaded.surface_from;
+    result_.age_from = loaded.age_from;
+    follows_ = true;
+  }
+  void skip(int frame, std::string reason) {
+    result_.skipped.push_back({frame, std::move(reason)});
+    follows_ = false;
+  }
+  [[nodiscard]] Evaluation finish() && {
+    if (result_.frames.empty()) {
+      throw std::runtime_error(
+          fmt::format("no frame could be measured; {}", result_.skipped.front().reason));
+    }
+    result_.mean = mean_figures(result_.frames);
+    if (result_.step) result_.lag = measure_lag(light_levels(result_.frames), *result_.step);
+    if (options_.step && !result_.lag) fail_without_step(*options_.step);
+    return std::move(result_);
+  }
+
+ private:
+  const EvaluateOptions& options_;
+  SequenceMetrics metrics_;
+  Evaluation result_;
+  bool follows_ = false;
+};
+
+}  // namespace
+
+Evaluation evaluate(const EvaluateOptions& given) {
+  EvaluateOptions options = given;
+  options.metrics.is_display = is_ldr_name(options.test);
+  const std::vector<Sequence> sequences = sequences_of(options);
+  const std::vector<int> frames = frames_of(options, sequences);
+  const auto missing = missing_files(frames, sequences);
+  if (!missing.empty() && !options.skips_bad) fail_missing(missing, frames.size());
+
+  Evaluator evaluator(options);
+  for (const int frame : frames) {
+    if (const auto found = missing.find(frame); found != missing.end()) {
+      evaluator.skip(frame, found->second);
+      continue;
+    }
+    try {
+      evaluator.measure(frame, paths_of(frame, sequences));
+    } catch (const std::runtime_error& error) {
+      if (!options.skips_bad) throw;
+      evaluator.skip(frame, error.what());
+    }
+  }
+  return std::move(evaluator).finish();
+}
+
+}  // namespace eigenlight

@@ -1,0 +1,114 @@
+#include "sequences/runs/render_plan.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "sequences/files/frame_range.h"
+#include "sequences/files/split_list.h"
+#include "temporal/methods.h"
+
+namespace eigenlight {
+namespace {
+
+// The upper half of all seeds belongs to references, so that no reference shares a sample with what
+// is measured against it.
+constexpr std::int64_t kSeeds = std::int64_t{1} << 31;
+constexpr std::uint32_t kReferenceSeeds = 0x80000000U;
+
+// Direct light has far less noise than indirect light, and error is measured on the latter: eight
+// times the default is enough for a picture to look at.
+constexpr int kReferenceDirectSpp = 64;
+
+// Samples of direct light, a third of the rays of a run at 3 spp: only for layers that show it.
+int direct_samples(const std::vector<Layer>& layers, bool is_reference, int usual) {
+  const bool shown = std::any_of(layers.begin(), layers.end(), [](Layer layer) {
+    return layer == Layer::kColor || layer == Layer::kDirect;
+  });
+  if (!shown) return 0;
+  return is_reference ? kReferenceDirectSpp : usual;
+}
+
+// Refuses early what would end in the kernel killing the process. Two frames, output and the
+// encoded file take about 350 bytes a pixel, a basis twice three floats.
+void check_memory(Extent extent, int bases) {
+  const double needed = static_cast<double>(extent.pixels()) * (350.0 + 24.0 * bases);
+  const double present =
+      static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
+  EL_CHECK(needed <= present,
+           "size {}x{}: needs about {:.0f} GB of memory, this machine has {:.0f}", extent.width,
+           extent.height, needed * 1e-9, present * 1e-9);
+}
+
+void check_range(std::string_view name, std::int64_t value, std::int64_t low, std::int64_t high) {
+  EL_CHECK(value >= low && value <= high, "{} {}: expected {} to {}", name, value, low, high);
+}
+
+void check_method(const std::string& name) {
+  std::string known;
+  for (const Method& method : methods()) {
+    if (method.name == name) return;
+    known += fmt::format("{}, ", method.name);
+  }
+  EL_CHECK(name == kReferenceMethod, "unknown method '{}'; known: {}{}", name, known,
+           kReferenceMethod);
+}
+
+}  // namespace
+
+std::string default_method() {
+  static constexpr std::string_view kOurs = "eigenlight";
+  const bool present = std::any_of(methods().begin(), methods().end(),
+                                   [](const Method& method) { return method.name == kOurs; });
+  return std::string(present ? kOurs : methods().front().name);
+}
+
+Extent parse_size(std::string_view text) {
+  Extent extent;
+  const char* end = text.data() + text.size();
+  const auto [cross, error] = std::from_chars(text.data(), end, extent.width);
+  bool valid = error == std::errc{} && cross != end && *cross == 'x';
+  if (valid) {
+    const auto [stop, second] = std::from_chars(cross + 1, end, extent.height);
+    valid = second == std::errc{} && stop == end;
+  }
+  valid = valid && extent.width >= 1 && extent.height >= 1 && extent.width <= kMaxSide &&
+          extent.height <= kMaxSide;
+  EL_CHECK(valid, "size '{}': expected WIDTHxHEIGHT with sides of 1 to {}, such as 640x360", text,
+           kMaxSide);
+  return extent;
+}
+
+RenderPlan make_plan(const RenderSettings& settings) {
+  RenderPlan plan;
+  plan.method = settings.method.empty() ? default_method() : settings.method;
+  check_method(plan.method);
+  const bool is_reference = plan.method == kReferenceMethod;
+  plan.denoiser = is_reference ? "noisy" : plan.method;
+  plan.frames = parse_frame_range(settings.frames);
+  check_range("bases", settings.bases, 1, 8);
+  check_range("seed", settings.seed, 0, kSeeds - 1);
+  check_range("threads", settings.threads, 0, 1024);
+  plan.bases = settings.bases;
+  plan.without = split_list("without", settings.without);
+  plan.perturbation = parse_perturbation(settings.perturb);
+  plan.perturb = format_perturbation(plan.perturbation);
+  plan.antialias = parse_antialias(settings.antialias);
+  plan.layers = parse_layers(settings.layers);
+
+  RenderOptions& render = plan.render;
+  render.extent = parse_size(settings.size);
+  check_memory(render.extent, plan.bases);
+  render.spp = settings.spp.value_or(is_reference ? kReferenceSpp : render.spp);
+  render.direct_spp = direct_samples(plan.layers, is_reference, render.direct_spp);
+  render.bounces = settings.bounces;
+  render.seed = static_cast<std::uint32_t>(settings.seed) | (is_reference ? kReferenceSeeds : 0U);
+  check_range("spp", render.spp, 1, 65536);
+  check_range("bounces", render.bounces, 1, 64);
+  render.validate();
+  return plan;
+}
+
+}  // namespace eigenlight

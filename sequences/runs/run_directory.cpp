@@ -1,0 +1,93 @@
+#include "sequences/runs/run_directory.h"
+
+#include <fmt/format.h>
+
+#include "sequences/files/atomic_file.h"
+#include "sequences/files/checkpoint.h"
+#include "sequences/files/file_pattern.h"
+#include "sequences/runs/run_log.h"
+
+namespace eigenlight {
+namespace {
+
+constexpr std::string_view kCheckpointFile = "state.bin";
+constexpr std::string_view kRunFile = "run.json";
+
+void load(const std::filesystem::path& file, const Checkpoint& checkpoint, Denoiser& denoiser) {
+  try {
+    StateReader reader({checkpoint.state.data(), checkpoint.state.size()});
+    denoiser.load(reader);
+    reader.finish();
+  } catch (const std::runtime_error& error) {
+    throw CheckpointError(fmt::format("{}: {}", file.string(), error.what()));
+  }
+}
+
+}  // namespace
+
+RunDirectory::RunDirectory(std::filesystem::path path, std::string run)
+    : path_(std::move(path)), run_(std::move(run)) {
+  std::error_code error;
+  std::filesystem::create_directories(path_, error);
+  if (!std::filesystem::is_directory(path_)) {
+    throw std::runtime_error(fmt::format("{}: cannot make the directory: {}", path_.string(),
+                                         error ? error.message() : "Not a directory"));
+  }
+}
+
+void RunDirectory::begin() const {
+  const std::filesystem::path state = path_ / kCheckpointFile;
+  std::error_code error;
+  std::filesystem::remove(state, error);
+  if (error) {
+    throw std::runtime_error(fmt::format("{}: cannot remove: {}", state.string(), error.message()));
+  }
+  write_file_atomically(path_ / kRunFile, run_);
+}
+
+void RunDirectory::check_same_run(const std::filesystem::path& file,
+                                  const std::string& there) const {
+  std::string difference;
+  try {
+    difference = first_difference(there, run_);
+  } catch (const std::runtime_error& error) {
+    throw CheckpointError(fmt::format("{}: {}", file.string(), error.what()));
+  }
+  if (!difference.empty()) {
+    throw CheckpointError(fmt::format("{}: of another run: {}", file.string(), difference));
+  }
+}
+
+std::size_t RunDirectory::resume(const std::vector<int>& frames, Denoiser& denoiser) const {
+  const std::filesystem::path state = path_ / kCheckpointFile;
+  if (!std::filesystem::exists(state)) {
+    const std::filesystem::path run = path_ / kRunFile;
+    if (std::filesystem::exists(run)) check_same_run(run, read_whole_file(run));
+    begin();
+    return 0;
+  }
+  const Checkpoint checkpoint = read_checkpoint(state);
+  check_same_run(state, checkpoint.run);
+  if (checkpoint.position > frames.size()) {
+    throw CheckpointError(fmt::format("{}: {} frames complete, but the run has {}", state.string(),
+                                      checkpoint.position, frames.size()));
+  }
+  const FilePattern pattern(kFramePattern);
+  for (std::size_t i = 0; i < checkpoint.position; ++i) {
+    const std::filesystem::path file = path_ / pattern.name(frames[i]);
+    if (std::filesystem::exists(file)) continue;
+    throw CheckpointError(fmt::format("{}: counts frame {} as complete, but {} is missing",
+                                      state.string(), frames[i], file.string()));
+  }
+  load(state, checkpoint, denoiser);
+  write_file_atomically(path_ / kRunFile, run_);
+  return checkpoint.position;
+}
+
+void RunDirectory::save(std::size_t position, const Denoiser& denoiser) const {
+  StateWriter state;
+  denoiser.save(state);
+  write_checkpoint(path_ / kCheckpointFile, {run_, position, state.bytes()});
+}
+
+}  // namespace eigenlight

@@ -1,0 +1,25 @@
+// From what a user calls a scene to the scene.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "render/scene/scene.h"
+
+namespace eigenlight {
+
+struct SceneRequest {
+  std::string name;  ///< built-in name, scene.json (or its directory), or .gltf, .glb, .obj
+  bool use_environment = false;
+};
+
+/// Adds to `notes` one line for each thing that was made up or left out. Throws
+/// std::invalid_argument listing the built-in scenes if `name` is neither one nor a file,
+/// std::runtime_error naming the file if it cannot be read.
+[[nodiscard]] Scene open_scene(const SceneRequest& request, std::vector<std::string>& notes);
+
+/// XXH3-64 of all that a scene holds, so that a run is not resumed with another one.
+[[nodiscard]] std::uint64_t scene_hash(const Scene& scene);
+
+}  // namespace eigenlight

@@ -1,0 +1,204 @@
+#include <algorithm>
+
+#include "frame/float_traps.h"
+#include "frame/prefetch.h"
+#include "temporal/bases/tile_sums.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "temporal/bases/tile_sums_simd.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace eigenlight::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using F = hn::ScalableTag<float>;
+using VF = hn::Vec<F>;
+
+using Color = VF[3];
+
+// Rec. 709 luminance.
+VF Luminance(const Color& v) {
+  const F d;
+  return hn::MulAdd(hn::Set(d, 0.2126f), v[0],
+                    hn::MulAdd(hn::Set(d, 0.7152f), v[1], hn::Mul(hn::Set(d, 0.0722f), v[2])));
+}
+
+// sum_c a_c b_c
+VF Dot(const Color& a, const Color& b) {
+  return hn::MulAdd(a[2], b[2], hn::MulAdd(a[1], b[1], hn::Mul(a[0], b[0])));
+}
+
+// A vector of pixels in the block of its bases.
+struct Block {
+  const BasisField& field;
+  const float* at;
+
+  void Load(int k, Color& v) const {
+    for (int c = 0; c < 3; ++c) v[c] = hn::Load(F(), at + kBlock * field.line_of(c, k));
+  }
+};
+
+// What a vector of pixels brings: the residual r = u - V_0, the weight m of each pixel, how many
+// count, and how many of them are off by far more than expected.
+struct Pixels {
+  Color residual;
+  VF weight;
+  std::size_t used = 0, outliers = 0;
+};
+
+// Bounded, outliers lose influence.
+Pixels LoadPixels(const SumInputs& in, const Block& block, int x, int y, bool is_bounded) {
+  const F d;
+  const VF largest = hn::Set(d, kLargestLight), one = hn::Set(d, 1.0f);
+  Color u, v;
+  for (std::size_t c = 0; c < 3; ++c) {
+    prefetch_below(in.frame.indirect[c], x, y);
+    u[c] = hn::LoadU(d, in.frame.indirect[c].row(y) + x);
+  }
+  block.Load(0, v);
+  const VF age = hn::Load(d, in.bases.ages(x, y)), luminance = Luminance(v);
+  prefetch_below(in.variance, x, y);
+  const VF variance = hn::LoadU(d, in.variance.row(y) + x);
+  const VF expected = hn::MulAdd(hn::Mul(hn::Set(d, 0.01f), luminance), luminance, variance);
+  // Comparisons with NaN are false; the age behind the last pixel is 0.
+  auto used = hn::And(hn::Gt(age, hn::Zero(d)), hn::Gt(expected, hn::Set(d, 1e-30f)));
+  for (const VF& value : u) used = hn::And(used, hn::Le(hn::Abs(value), largest));
+  Pixels pixels;
+  for (int c = 0; c < 3; ++c) pixels.residual[c] = hn::IfThenElseZero(used, hn::Sub(u[c], v[c]));
+  pixels.used = hn::CountTrue(d, used);
+  VF weight = hn::Div(age, hn::Mul(hn::Add(age, one), hn::IfThenElse(used, expected, one)));
+  weight = hn::IfThenElseZero(used, weight);
+  if (is_bounded) {
+    const VF off = Luminance(pixels.residual);
+    const VF excess =
+        hn::Mul(hn::Mul(hn::Mul(weight, off), off), hn::Set(d, 1.0f / (kOutlier * kOutlier)));
+    const auto beyond = hn::Gt(excess, one);
+    weight = hn::Div(weight, hn::IfThenElse(beyond, excess, one));
+    pixels.outliers = hn::CountTrue(d, beyond);
+  }
+  pixels.weight = weight;
+  return pixels;
+}
+
+// Sums of a few rows, lane by lane; those of TileSums.
+struct LaneSums {
+  VF gram[kMaxBases * (kMaxBases + 1) / 2];
+  VF innovation[kMaxBases], spread[kMaxBases], lean[kMaxBases], reach[kMaxBases];
+};
+
+// Calls visit(lane sum, sum) for all of `active` bases.
+template <typename Visit>
+void ForEachSum(int active, LaneSums& lanes, TileSums& sums, const Visit& visit) {
+  for (int j = 0; j < active; ++j) {
+    const auto at = static_cast<std::size_t>(j);
+    for (int k = 0; k <= j; ++k) {
+      visit(lanes.gram[packed(k, j)], sums.gram[static_cast<std::size_t>(packed(k, j))]);
+    }
+    visit(lanes.innovation[j], sums.innovation[at]);
+    visit(lanes.spread[j], sums.spread[at]);
+    visit(lanes.lean[j], sums.lean[at]);
+    visit(lanes.reach[j], sums.reach[at]);
+  }
+}
+
+void AddPixels(const Pixels& pixels, const Block& block, int active, LaneSums& sums) {
+  Color steady;
+  block.Load(0, steady);
+  for (int j = 0; j < active; ++j) {
+    Color own;
+    block.Load(j, own);
+    for (VF& value : own) value = hn::Mul(pixels.weight, value);
+    const VF weighted = Dot(own, pixels.residual), along = Dot(own, steady);
+    const auto add = [](VF value, VF& sum) { sum = hn::Add(sum, value); };
+    const auto add_product = [](VF a, VF b, VF& sum) { sum = hn::MulAdd(a, b, sum); };
+    add(weighted, sums.innovation[j]);
+    add_product(weighted, weighted, sums.spread[j]);
+    add_product(weighted, along, sums.lean[j]);
+    add_product(along, along, sums.reach[j]);
+    add(along, sums.gram[packed(0, j)]);
+    for (int k = 1; k <= j; ++k) {
+      Color other;
+      block.Load(k, other);
+      add(Dot(own, other), sums.gram[packed(k, j)]);
+    }
+  }
+}
+
+void AddRows(const SumInputs& in, const Tile& rows, bool is_bounded, TileSums& sums) {
+  const int active = std::min(in.active, in.bases.bases());
+  LaneSums lanes;
+  ForEachSum(active, lanes, sums, [](VF& lane, double&) { lane = hn::Zero(F()); });
+  std::size_t used = 0, outliers = 0;
+  for (int y = rows.y0; y < rows.y1; ++y) {
+    for (int x = rows.x0; x < rows.x1; x += static_cast<int>(hn::Lanes(F()))) {
+      const Block block{in.bases, in.bases.at(x, y)};
+      const Pixels pixels = LoadPixels(in, block, x, y, is_bounded);
+      if (pixels.used == 0) continue;
+      used += pixels.used;
+      outliers += pixels.outliers;
+      AddPixels(pixels, block, active, lanes);
+    }
+  }
+  if (used == 0) return;
+  sums.pixels += static_cast<double>(used);
+  sums.outliers += static_cast<double>(outliers);
+  ForEachSum(active, lanes, sums, [](VF& lane, double& sum) {
+    sum += static_cast<double>(hn::GetLane(hn::SumOfLanes(F(), lane)));
+  });
+}
+
+void AddTile(const SumInputs& in, const Tile& tile, bool is_bounded, TileSums& sums) {
+  for (int y = tile.y0; y < tile.y1; y += kSumRows) {
+    AddRows(in, {tile.x0, y, tile.x1, std::min(y + kSumRows, tile.y1), tile.index}, is_bounded,
+            sums);
+  }
+}
+
+}  // namespace
+}  // namespace eigenlight::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace eigenlight {
+
+HWY_EXPORT(AddTile);
+
+void accumulate_tile(const SumInputs& in, const Tile& tile, TileSums& sums) {
+  EL_DCHECK(tile.x1 - tile.x0 <= kSegment);
+  const FloatTrapsOff lanes_behind_masks_may_hold_anything;
+  HWY_DYNAMIC_DISPATCH(AddTile)(in, tile, true, sums);
+}
+
+void admit_outliers(const SumInputs& in, const Tile& tile, TileSums& sums) {
+  if (8.0 * sums.outliers <= sums.pixels) return;
+  const FloatTrapsOff lanes_behind_masks_may_hold_anything;
+  sums = {};
+  HWY_DYNAMIC_DISPATCH(AddTile)(in, tile, false, sums);
+}
+
+TileSums& TileSums::operator+=(const TileSums& other) {
+  const auto add = [](auto& to, const auto& from) {
+    std::transform(to.begin(), to.end(), from.begin(), to.begin(), std::plus<>());
+  };
+  add(gram, other.gram);
+  add(innovation, other.innovation);
+  add(spread, other.spread);
+  add(lean, other.lean);
+  add(reach, other.reach);
+  pixels += other.pixels;
+  outliers += other.outliers;
+  return *this;
+}
+
+double TileSums::scatter(std::size_t i, double delta) const {
+  const double freedom = 1.0 - 3.0 * reach[0] / (gram[0] * gram[0]);
+  if (!(freedom > 0.0)) return spread[i];
+  // The terms cancel where the gain explains all: rounding may leave less than nothing.
+  return std::max(spread[i] + delta * (delta * reach[i] - 2.0 * lean[i]), 0.0) / freedom;
+}
+
+}  // namespace eigenlight
+#endif

@@ -1,0 +1,94 @@
+// What the bases cannot explain but many neighbors agree on is added to the history at once.
+#pragma once
+
+#include "frame/frame.h"
+#include "spatial/atrous.h"
+#include "temporal/bases/coefficients.h"
+#include "temporal/change/residual_cells.h"
+
+namespace eigenlight {
+
+struct CorrectionOptions {
+  /// [0, 1000] variances of the smoothed residual that count as chance.
+  float significance = 10.0f;
+  int passes = 5;           ///< [1, 6] of the a-trous filter over cells that smooths the residual
+  bool gated = true;        ///< filter only where light changes; else everywhere
+  bool skip_planar = true;  ///< as in AtrousOptions
+
+  void validate() const;  ///< throws std::invalid_argument naming the field
+};
+
+/// The smoothed innovation. The residual u - prediction has variance v (1/s + 1/n); averaged over
+/// cells of 2 x 2 pixels, an edge-avoiding filter that looks at geometry only turns it into m with
+/// variance q, and
+///   correction = m f g,   f = max(0, 1 - significance * q / luminance(m)^2), averaged over
+///   those of 3 x 3 cells that have a confirmed pixel,
+/// is what the prediction lacks. A light that changes in a way no basis knows yet is so followed
+/// within the frame, by its spatial smoothness instead of its history.
+///
+/// g in [0, 1] opens where light does change: it grows with the share of 8 x 8 blocks whose mean
+/// residual exceeds three of its standard deviations, over a coefficient tile and its neighbors,
+/// interpolated between tiles. Where it is closed nothing is filtered.
+class Correction {
+ public:
+  Correction(Extent extent, const CorrectionOptions& options);
+
+  /// Takes in the geometry of `area`, an even number of rows from an even one on (or up to the last
+  /// one), for the cells that the last frame needed, while it is in the cache. To be called for all
+  /// of the image before count(), in any order and on any thread (apart: cells are written up to 16
+  /// pixels beside the area).
+  void place(const GBuffer& surface, const Tile& area);
+  /// Takes in the pixels of `area`, one or more blocks of 8 x 8 side by side: their blocks are
+  /// tested, and cells are filled that the last frame needed. To be called for all of the image
+  /// before process(), as place(); again for blocks that change.
+  void count(const CorrectionInputs& in, const Tile& area);
+  /// Leaves what is to be added to the prediction in correction(), and subtracts its luminance from
+  /// `innovation`, which may be that of the inputs. Returns the share of confirmed pixels corrected
+  /// by more than half.
+  double process(const CorrectionInputs& in, Plane<float>& innovation);
+  /// Zero where the prediction lacks nothing.
+  [[nodiscard]] const Planes<3>& correction() const { return correction_; }
+  /// Whether the last frame may have corrected anything in a tile of the coefficients' grid.
+  [[nodiscard]] bool is_open(int tile) const { return open_[static_cast<std::size_t>(tile)] != 0; }
+  /// g of a tile of the coefficients' grid in the last frame, [0, 1], whether filtering is gated or
+  /// not: how surely its light changed in a way no basis knows.
+  [[nodiscard]] float change(int tile) const { return change_[static_cast<std::size_t>(tile)]; }
+  /// Pixels of the last frame in tiles that were not open: nothing was filtered there.
+  [[nodiscard]] std::int64_t skipped() const { return skipped_; }
+
+ private:
+  struct TileBlocks {
+    int all = 0, significant = 0;
+  };
+
+  template <typename Body>
+  void for_needed_cells(const Tile& area, const Body& body) const;
+  void count_tiles();
+  [[nodiscard]] bool open_gates();
+  void close_tile(const Tile& tile);
+  void choose_cells();
+  struct WindowRow {
+    float factor[kCoefficientTile], known[kCoefficientTile];
+  };
+  void find_factor(const Tile& cells);
+  void sum_windows(int x0, int y, int count, WindowRow& sums) const;
+  void weigh_cells(const Tile& cells);
+
+  CorrectionOptions options_;
+  CoefficientField gate_;  // g - 1 per tile
+  ResidualCells cells_;
+  TileGrid grid_;  // of cells
+  Atrous filter_;
+  Planes<3> correction_;
+  Plane<float> factor_;  // f of each cell
+  TileGrid block_grid_;
+  std::vector<ResidualBlock> blocks_;
+  std::vector<TileBlocks> tile_blocks_;                     // per coefficient tile
+  std::vector<std::uint8_t> open_, was_open_;               // per coefficient tile
+  std::vector<float> change_;                               // g per coefficient tile
+  std::vector<std::uint8_t> wanted_, loaded_, was_loaded_;  // per tile of cells
+  std::vector<std::int64_t> corrected_;                     // confirmed pixels per tile of cells
+  std::int64_t skipped_ = 0;
+};
+
+}  // namespace eigenlight

@@ -1,0 +1,47 @@
+// What EigenDenoiser can be told.
+#pragma once
+
+#include "reproject/taps.h"
+#include "spatial/atrous.h"
+#include "spatial/guided_filter.h"
+#include "spatial/sample_budget.h"
+#include "temporal/bases/coefficients.h"
+#include "temporal/change/correction.h"
+#include "temporal/change/innovation.h"
+#include "temporal/samples/firefly_bound.h"
+
+namespace eigenlight {
+
+struct EigenOptions {
+  TapOptions taps;
+  ShrinkOptions shrink;
+  FireflyOptions fireflies;
+  CorrectionOptions correction;
+  InnovationOptions innovation;
+  BudgetOptions budget;
+  GuidedOptions guided;
+  AtrousOptions atrous{.passes = 4, .radius = 1, .luminance_sigmas = 7.0f};
+  /// [0, 255] frames: younger pixels take the guided filter's value the more, the younger they are.
+  float young = 2.0f;
+  /// [1, 255] frames: the longest age where light changes in ways that no basis knows. A filter
+  /// takes noise from the estimate later, but not what an old light left in it.
+  float changing = 12.0f;
+  /// [1, 255] frames: the longest age at edges whose history is blended (edges.h);
+  /// where light changes, two thirds of that of the pixels around, if that is less. From the
+  /// longest age of all on, edges are like other pixels.
+  float edge = 12.0f;
+  /// [0, 1] of the squared luminance: a tile whose variances all lie below it is not filtered.
+  float quiet = 1e-5f;
+  /// [0, 1] of the pixels that must need correction before another basis is born.
+  double birth = 0.1;
+  bool project = true;     ///< solve for coefficients; else the light is taken to be steady
+  bool correct = true;     ///< add the smoothed innovation
+  bool filter = true;      ///< a-trous passes over the output
+  bool look_back = true;   ///< they tell edges of light by the last output as well
+  bool skip_still = true;  ///< no taps for frames in which nothing moves
+  bool skip_empty = true;  ///< no work in tiles without surface
+
+  void validate() const;  ///< throws std::invalid_argument naming the field
+};
+
+}  // namespace eigenlight

@@ -1,0 +1,76 @@
+#include "temporal/eigen/eigen_parts.h"
+
+#include <algorithm>
+#include <array>
+
+namespace eigenlight {
+namespace {
+
+struct Switch {
+  Part part;
+  void (*turn_off)(EigenOptions& options, int& bases);
+};
+
+constexpr std::array kSwitches{
+    Switch{{"projection", "light is taken to be steady: all coefficients stay (1, 0, ...)"},
+           [](EigenOptions& options, int&) { options.project = false; }},
+    Switch{{"modes", "one basis: light may change by a gain only"},
+           [](EigenOptions&, int& bases) { bases = 1; }},
+    Switch{{"shrinkage", "coefficients as least squares gives them, noise and all"},
+           [](EigenOptions& options, int&) { options.shrink.noise = 0.0; }},
+    Switch{{"innovation-test", "ages grow whatever the residual says"},
+           [](EigenOptions& options, int&) { options.innovation.test = false; }},
+    Switch{{"edges", "pixels where surfaces meet remember as long as others"},
+           [](EigenOptions& options, int&) { options.edge = 255.0f; }},
+    Switch{{"correction", "no smoothed innovation, and so no new basis either"},
+           [](EigenOptions& options, int&) { options.correct = false; }},
+    Switch{{"resampling", "young pixels get no further samples"},
+           [](EigenOptions& options, int&) { options.budget.share = 0.0; }},
+    Switch{{"guided", "young pixels are not filled by the guided filter"},
+           [](EigenOptions& options, int&) { options.young = 0.0f; }},
+    Switch{{"atrous", "no a-trous passes over the output"},
+           [](EigenOptions& options, int&) { options.filter = false; }},
+    Switch{{"look-back", "a-trous passes tell edges of light by this frame alone"},
+           [](EigenOptions& options, int&) {
+             options.look_back = false;
+             options.atrous.luminance_sigmas = 5.0f;
+           }},
+    Switch{{"skip-still", "taps and warp also where nothing moves"},
+           [](EigenOptions& options, int&) { options.skip_still = false; }},
+    Switch{{"skip-empty", "all work also in tiles without surface"},
+           [](EigenOptions& options, int&) { options.skip_empty = false; }},
+    Switch{{"skip-quiet", "a-trous passes also where there is little left to filter"},
+           [](EigenOptions& options, int&) { options.quiet = 0.0f; }},
+    Switch{{"skip-planar", "a-trous passes weigh geometry also where all taps lie in one plane"},
+           [](EigenOptions& options, int&) {
+             options.atrous.skip_planar = options.correction.skip_planar = false;
+           }},
+    Switch{{"skip-steady", "the correction filters also where no light changes"},
+           [](EigenOptions& options, int&) { options.correction.gated = false; }},
+};
+
+}  // namespace
+
+std::span<const Part> eigen_parts() {
+  static const auto kParts = [] {
+    std::array<Part, kSwitches.size()> parts;
+    std::transform(kSwitches.begin(), kSwitches.end(), parts.begin(),
+                   [](const Switch& entry) { return entry.part; });
+    return parts;
+  }();
+  return kParts;
+}
+
+std::unique_ptr<Denoiser> make_eigen_denoiser(const DenoiserOptions& options) {
+  EigenOptions parts;
+  DenoiserOptions used = options;
+  for (const std::string& name : options.without) {
+    const auto found = std::find_if(kSwitches.begin(), kSwitches.end(),
+                                    [&](const Switch& entry) { return entry.part.name == name; });
+    EL_CHECK(found != kSwitches.end(), "eigenlight has no part '{}'", name);
+    found->turn_off(parts, used.bases);
+  }
+  return std::make_unique<EigenDenoiser>(used, parts);
+}
+
+}  // namespace eigenlight

@@ -1,0 +1,81 @@
+#include "temporal/eigen/output_filter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "frame/luminance.h"
+#include "frame/strips.h"
+#include "reproject/warp.h"
+
+namespace eigenlight {
+namespace {
+
+constexpr float kNotShown = std::numeric_limits<float>::quiet_NaN();
+
+}  // namespace
+
+OutputFilter::OutputFilter(Extent extent, const EigenOptions& options)
+    : options_(options),
+      looks_back_(options.filter && options.look_back),
+      tiles_(extent, kCoefficientTile, kCoefficientTile),
+      guided_(extent, options.guided),
+      atrous_(extent, options.atrous),
+      guided_light_(make_planes<3>(extent)),
+      shown_(extent),
+      earlier_(extent) {}
+
+void OutputFilter::warp(const TapSegment& taps, const Tile& row) {
+  if (looks_back_) warp_plane(shown_, taps, row, earlier_);
+}
+
+FilterReport OutputFilter::process(const FilterInputs& in, Planes<3>& output,
+                                   Plane<float>& variance) {
+  FilterReport report;
+  report.guided = fill_young(in, output, variance);
+  if (looks_back_) forget_new(in.old_age);
+  if (options_.filter) {
+    report.atrous = atrous_.process(in.frame, options_.quiet, output, variance,
+                                    looks_back_ ? &earlier_ : nullptr);
+    report.geometry = atrous_.planar_pixels();
+  }
+  if (!looks_back_) return report;
+  for_each_segment(tiles_, [&](const Tile& row) {
+    for (int x = row.x0; x < row.x1; ++x) shown_(x, row.y0) = luminance(output, x, row.y0);
+  });
+  return report;
+}
+
+// New pixels have not been shown.
+void OutputFilter::forget_new(const Plane<float>& old_age) {
+  for_each_segment(tiles_, [&](const Tile& row) {
+    const float* age = old_age.row(row.y0);
+    float* earlier = earlier_.row(row.y0);
+    for (int x = row.x0; x < row.x1; ++x) earlier[x] = age[x] == 0.0f ? kNotShown : earlier[x];
+  });
+}
+
+// The share that young pixels keep of their own grows with age; so does the share of their
+// variance.
+std::int64_t OutputFilter::fill_young(const FilterInputs& in, Planes<3>& output,
+                                      Plane<float>& variance) {
+  const std::int64_t skipped = guided_.process({in.frame, output, in.age, in.young}, guided_light_);
+  if (skipped == static_cast<std::int64_t>(tiles_.extent().pixels())) return skipped;
+  for_each_tile(tiles_, [&](const Tile& tile) {
+    for (int y = tile.y0; y < tile.y1; ++y) {
+      for (int x = tile.x0; x < tile.x1; ++x) {
+        // Without geometry no neighbor can stand in.
+        if (in.young(x, y) == 0 || std::isinf(in.frame.surface.depth(x, y))) continue;
+        const float own = in.age(x, y) / options_.young;
+        for (std::size_t c = 0; c < 3; ++c) {
+          const float guided = std::max(guided_light_[c](x, y), 0.0f);
+          output[c](x, y) = guided + own * (output[c](x, y) - guided);
+        }
+        variance(x, y) *= own * own;
+      }
+    }
+  });
+  return skipped;
+}
+
+}  // namespace eigenlight

@@ -1,0 +1,85 @@
+#include "sequences/runs/run_directory.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "sequences/files/atomic_file.h"
+#include "sequences/files/checkpoint.h"
+#include "temporal/baselines/frame_by_frame.h"
+#include "tests/support/temp_dir.h"
+
+namespace eigenlight {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+constexpr const char* kRun = R"({"scene": "atrium", "spp": 3})";
+const std::vector<int> kFrames{4, 5, 6};
+
+class RunDirectoryTest : public testing::Test {
+ protected:
+  void pretend_frame(int frame) {
+    std::ofstream(dir_ / FilePattern(kFramePattern).name(frame)) << "x";
+  }
+  std::string refusal(const std::string& run) {
+    try {
+      (void)RunDirectory(dir_.path(), run).resume(kFrames, denoiser_);
+    } catch (const CheckpointError& error) {
+      return error.what();
+    }
+    return "not refused";
+  }
+
+  TempDir dir_;
+  FrameByFrame denoiser_{{{8, 8}, 3}, "noisy"};
+};
+
+TEST_F(RunDirectoryTest, ResumesWhereItWasSaved) {
+  const RunDirectory run(dir_.path(), kRun);
+  run.begin();
+  pretend_frame(4);
+  pretend_frame(5);
+  run.save(2, denoiser_);
+  EXPECT_EQ(run.resume(kFrames, denoiser_), 2u);
+  // Beginning anew forgets it.
+  run.begin();
+  EXPECT_FALSE(std::filesystem::exists(dir_ / "state.bin"));
+  EXPECT_EQ(run.resume(kFrames, denoiser_), 0u);
+}
+
+TEST_F(RunDirectoryTest, RefusesWhatIsNotItsOwn) {
+  const RunDirectory run(dir_.path(), kRun);
+  EXPECT_EQ(run.resume(kFrames, denoiser_), 0u);
+  const std::string other = R"({"scene": "atrium", "spp": 8})";
+  EXPECT_THAT(refusal(other), HasSubstr("run.json: of another run: spp is 3 there, 8 here"));
+  run.save(0, denoiser_);
+  EXPECT_THAT(refusal(other), HasSubstr("state.bin: of another run: spp is 3 there, 8 here"));
+  run.save(1, denoiser_);
+  EXPECT_THAT(refusal(kRun), HasSubstr("frame.0004.exr is missing"));
+  run.save(4, denoiser_);
+  EXPECT_THAT(refusal(kRun), HasSubstr("4 frames complete, but the run has 3"));
+  std::string bytes = read_whole_file(dir_ / "state.bin");
+  bytes.back() = static_cast<char>(bytes.back() ^ 1);
+  write_file_atomically(dir_ / "state.bin", bytes);
+  EXPECT_THAT(refusal(kRun), HasSubstr("state.bin: damaged: the checksum does not match"));
+  // A checksum that fits does not make a state of another method fit.
+  StateWriter alien;
+  alien.value("mean", 1u);
+  write_checkpoint(dir_ / "state.bin", {kRun, 0, alien.bytes()});
+  EXPECT_THAT(refusal(kRun), HasSubstr("state.bin: state of 'noisy': found 'mean'"));
+}
+
+TEST_F(RunDirectoryTest, NamesADirectoryThatCannotBe) {
+  std::ofstream(dir_ / "file") << "x";
+  EXPECT_THAT([&] { RunDirectory(dir_ / "file", kRun); },
+              ThrowsMessage<std::runtime_error>(HasSubstr("file: cannot make the directory: ")));
+  EXPECT_THAT(
+      [&] { RunDirectory(dir_ / "file/sub", kRun); },
+      ThrowsMessage<std::runtime_error>(HasSubstr("file/sub: cannot make the directory: ")));
+}
+
+}  // namespace
+}  // namespace eigenlight

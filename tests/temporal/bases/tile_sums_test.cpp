@@ -1,0 +1,177 @@
+#include "temporal/bases/tile_sums.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "frame/float_traps.h"
+#include "tests/reference/tile_sums.h"
+#include "tests/support/extents.h"
+#include "tests/support/random_frames.h"
+#include "tests/support/targets.h"
+
+namespace eigenlight {
+namespace {
+
+// Sums along a row are in float: 64 terms of either sign, each within half an ulp of the largest
+// partial sum. 1e-5 of the sum of magnitudes holds for all orders that targets add in.
+constexpr double kTolerance = 1e-5;
+
+void expect_sums_near(const TileSums& found, const TileSums& wanted, int bases) {
+  EXPECT_EQ(found.pixels, wanted.pixels);
+  for (int j = 0; j < bases; ++j) {
+    const auto jj = static_cast<std::size_t>(packed(j, j));
+    // Cauchy-Schwarz bounds the magnitudes of what went into mixed sums.
+    const auto at = static_cast<std::size_t>(j);
+    EXPECT_NEAR(found.innovation[at], wanted.innovation[at],
+                kTolerance * std::sqrt(wanted.spread[at] * wanted.pixels) + 1e-300)
+        << "basis " << j;
+    EXPECT_NEAR(found.spread[at], wanted.spread[at], kTolerance * wanted.spread[at]);
+    EXPECT_NEAR(found.lean[at], wanted.lean[at],
+                kTolerance * std::sqrt(wanted.spread[at] * wanted.reach[at]));
+    EXPECT_NEAR(found.reach[at], wanted.reach[at], kTolerance * wanted.reach[at]);
+    for (int i = 0; i <= j; ++i) {
+      const auto ii = static_cast<std::size_t>(packed(i, i));
+      const auto ij = static_cast<std::size_t>(packed(i, j));
+      EXPECT_NEAR(found.gram[ij], wanted.gram[ij],
+                  kTolerance * std::sqrt(wanted.gram[ii] * wanted.gram[jj]))
+          << i << ", " << j;
+    }
+  }
+}
+
+TEST(TileSums, AgreeWithTheTwinOnEveryTarget) {
+  const FloatTrapsOff nan_is_meant;
+  for (const Extent extent : kSweepExtents) {
+    const Frame frame = make_random_frame({.extent = extent}, 2);
+    const Plane<float> variance = random_plane(extent, 5, 0.05f, 0.6f);
+    for (const int bases : {1, 3, kMaxBases}) {
+      const BasisField field = random_bases(extent, bases, 8);
+      const SumInputs in{field, frame, variance};
+      for (const int side : {32, kSegment}) {
+        const TileGrid grid(extent, side, 32);
+        for (int index = 0; index < grid.count(); ++index) {
+          const Tile tile = grid.tile(index);
+          const TileSums wanted = reference::tile_sums(in, tile);
+          for_each_target([&] {
+            TileSums sums;
+            accumulate_tile(in, tile, sums);
+            admit_outliers(in, tile, sums);
+            expect_sums_near(sums, wanted, bases);
+          });
+        }
+      }
+    }
+  }
+}
+
+TEST(TileSums, AddToWhatIsThere) {
+  const Extent extent{32, 32};
+  const Frame frame = make_random_frame({.extent = extent}, 2);
+  const Plane<float> variance = random_plane(extent, 5, 0.05f, 0.6f);
+  const BasisField field = random_bases(extent, 2, 8);
+  TileSums once, twice;
+  accumulate_tile({field, frame, variance}, {0, 0, 32, 32, 0}, once);
+  accumulate_tile({field, frame, variance}, {0, 0, 32, 16, 0}, twice);
+  accumulate_tile({field, frame, variance}, {0, 16, 32, 32, 0}, twice);
+  for (std::size_t i = 0; i < once.gram.size(); ++i) {
+    EXPECT_DOUBLE_EQ(twice.gram[i], once.gram[i]);
+  }
+  TileSums added = once;
+  added += once;
+  EXPECT_EQ(added.gram[0], 2.0 * once.gram[0]);
+  EXPECT_EQ(added.innovation[1], 2.0 * once.innovation[1]);
+  EXPECT_EQ(added.spread[1], 2.0 * once.spread[1]);
+  EXPECT_EQ(added.pixels, 2.0 * once.pixels);
+}
+
+// A pixel counts only with history and finite light: each reason alone leaves it out.
+TEST(TileSums, LeaveOutWhatCannotBeUsed) {
+  const FloatTrapsOff nan_is_meant;
+  const Extent extent{5, 3};
+  Frame frame = make_random_frame({.extent = extent, .sky = false, .non_finite = false}, 2);
+  const Plane<float> variance = random_plane(extent, 5, 0.05f, 0.6f);
+  BasisField field(extent, 2);
+  fill_bases(field, 1.0f);
+  const auto pixels = [&] {
+    TileSums sums;
+    accumulate_tile({field, frame, variance}, {0, 0, 5, 3, 0}, sums);
+    EXPECT_TRUE(std::isfinite(sums.gram[0]));
+    EXPECT_TRUE(std::isfinite(sums.innovation[0]));
+    EXPECT_TRUE(std::isfinite(sums.spread[0]));
+    return sums.pixels;
+  };
+  for_each_target([&] {
+    EXPECT_EQ(pixels(), 15.0);
+    field.age(4, 2) = 0.0f;
+    EXPECT_EQ(pixels(), 14.0);
+    field.age(4, 2) = 1.0f;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const float kept = frame.indirect[c](2, 1);
+      for (const float bad :
+           {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
+            -std::numeric_limits<float>::infinity()}) {
+        frame.indirect[c](2, 1) = bad;
+        EXPECT_EQ(pixels(), 14.0);
+      }
+      frame.indirect[c](2, 1) = kept;
+    }
+  });
+}
+
+TEST(TileSums, OfAGainKnowIt) {
+  // u = 1.5 V_0 everywhere: <V_0, u - V_0> is half of <V_0, V_0>.
+  const Extent extent{32, 32};
+  Frame frame = make_random_frame({.extent = extent, .sky = false, .non_finite = false}, 2);
+  const Plane<float> variance = random_plane(extent, 5, 0.05f, 0.6f);
+  BasisField field = random_bases(extent, 1, 8);
+  for (int y = 0; y < 32; ++y) {
+    for (int x = 0; x < 32; ++x) {
+      for (int c = 0; c < 3; ++c) {
+        frame.indirect[static_cast<std::size_t>(c)](x, y) = 1.5f * field.value(x, y, c, 0);
+      }
+    }
+  }
+  TileSums sums;
+  accumulate_tile({field, frame, variance}, {0, 0, 32, 32, 0}, sums);
+  EXPECT_GT(sums.gram[0], 0.0);
+  EXPECT_NEAR(sums.innovation[0], 0.5 * sums.gram[0], 1e-5 * sums.gram[0]);
+}
+
+// A row of nonsense is no more a light that changed than as many pixels elsewhere are.
+TEST(TileSums, HoldBackALineOfOutliersAndFollowATileOfThem) {
+  const Extent extent{32, 32};
+  Frame frame = make_random_frame({.extent = extent, .sky = false, .non_finite = false}, 2);
+  BasisField field(extent, 1);
+  fill_bases(field, 1.0f);
+  Plane<float> variance(extent);
+  variance.fill(0.01f);
+  const auto gain = [&](int rows) {
+    for (auto& plane : frame.indirect) {
+      plane.fill(1.0f);
+      for (int y = 0; y < rows; ++y) std::fill(plane.row(y), plane.row(y) + 32, -5.0f);
+    }
+    TileSums sums;
+    // In two parts: which pixels are few is decided for the whole tile.
+    accumulate_tile({field, frame, variance}, {0, 0, 32, 1, 0}, sums);
+    accumulate_tile({field, frame, variance}, {0, 1, 32, 32, 0}, sums);
+    admit_outliers({field, frame, variance}, {0, 0, 32, 32, 0}, sums);
+    return 1.0 + sums.innovation[0] / sums.gram[0];
+  };
+  for_each_target([&] {
+    EXPECT_NEAR(gain(1), 1.0, 0.02);  // not held back, 1 - 6 / 32
+    EXPECT_NEAR(gain(16), -2.0, 1e-5);
+  });
+}
+
+TEST(TileSums, PackedTriangleHasEachPairOnce) {
+  int next = 0;
+  for (int j = 0; j < kMaxBases; ++j) {
+    for (int i = 0; i <= j; ++i) EXPECT_EQ(packed(i, j), next++);
+  }
+  EXPECT_EQ(static_cast<std::size_t>(next), TileSums{}.gram.size());
+}
+
+}  // namespace
+}  // namespace eigenlight
