@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "frame/camera.h"
 #include "frame/plane.h"
@@ -23,66 +25,62 @@ struct GBuffer {
   }
 };
 
-/// Everything that a source knows of one frame. The source fills it; every stage only reads it.
-struct Frame {
+/// One layer of light as it was rendered: noisy, and without the color that a picture multiplies it
+/// by, so that filters do not blur textures.
+struct NoisyLight {
+  Planes<3> radiance;  ///< over `color`, linear Rec. 709; may hold NaN and Inf
+  Planes<3> color;     ///< what a picture multiplies it by; empty: the albedo of the surface
+};
+
+/// Most layers of light that a frame holds.
+inline constexpr int kMaxLights = 6;
+
+/// All that the denoiser reads of a frame. The source fills it; every stage only reads it. Planes
+/// may be views of the source's memory (Plane::view), valid until the next frame is asked for.
+struct FrameInput {
   int index = 0;            ///< frame number
   int previous_index = -1;  ///< frame that `motion` leads to; history of any other frame is dropped
-  bool is_static =
-      false;    ///< the source knows that camera and objects stand as in the previous frame
-  int spp = 0;  ///< samples of indirect light per pixel in `indirect`
+  /// The source knows that camera and objects stand as in the previous frame.
+  bool is_static = false;
+  int spp = 0;  ///< samples per pixel in each layer of light
   Camera camera;
   GBuffer surface;
-  Planes<3> indirect;  ///< raw indirect radiance over albedo, linear; may hold NaN and Inf
-  Planes<2> motion;    ///< pixels: what is seen at p was at p + motion(p) in the previous frame
+  std::vector<NoisyLight> lights = std::vector<NoisyLight>(1);  ///< one to kMaxLights layers
+  Planes<2> motion;  ///< pixels: what is seen at p was at p + motion(p) in the previous frame
   Plane<float> previous_depth;  ///< depth that the same point had there, for that frame's camera
-
-  // Layers that the denoiser passes by: they are composed and written.
-  Planes<3> direct;    ///< radiance over albedo that lights send to the first hit
-  Planes<3> emission;  ///< radiance that the first hit, or the sky behind it, sends out itself
-  Planes<3> position;  ///< world space; 0 where there is no surface
 
   std::int64_t rays = 0;                ///< traced for this frame so far, resampling included
   std::int64_t non_finite_samples = 0;  ///< samples the source itself excluded
 
   [[nodiscard]] Extent extent() const { return surface.depth.extent(); }
 
-  /// Allocates all planes for `extent`; keeps those that have it already.
-  void resize(Extent extent) {
+  /// Gives all planes the shape `extent` but the lights' colors; keeps those that have it already.
+  void resize_input(Extent extent) {
     surface.resize(extent);
-    ensure_extent(indirect, extent);
+    for (NoisyLight& light : lights) ensure_extent(light.radiance, extent);
     ensure_extent(motion, extent);
     ensure_extent(previous_depth, extent);
+  }
+};
+
+/// A frame with the layers that pass the denoiser by: they are composed and written.
+struct Frame : FrameInput {
+  Planes<3> direct;    ///< radiance over albedo that lights send to the first hit
+  Planes<3> emission;  ///< radiance that the first hit, or the sky behind it, sends out itself
+  Planes<3> position;  ///< world space; 0 where there is no surface
+
+  /// resize_input(), and the same for the other layers.
+  void resize(Extent extent) {
+    resize_input(extent);
     ensure_extent(direct, extent);
     ensure_extent(emission, extent);
     ensure_extent(position, extent);
   }
 };
 
-/// Copies all of a frame, reusing the storage of `to`.
-inline void copy_frame(const Frame& from, Frame& to) {
-  // Names every member, so that one that is added later cannot be forgotten here.
-  const auto& [number, previous, still, samples, camera, surface, indirect, motion, previous_depth,
-               direct, emission, position, rays, non_finite] = from;
-  const auto& [depth, normal, albedo, id] = surface;
-  to.resize(from.extent());
-  to.index = number;
-  to.previous_index = previous;
-  to.is_static = still;
-  to.spp = samples;
-  to.camera = camera;
-  to.surface.depth.copy_from(depth);
-  copy_planes(normal, to.surface.normal);
-  copy_planes(albedo, to.surface.albedo);
-  to.surface.id.copy_from(id);
-  copy_planes(indirect, to.indirect);
-  copy_planes(motion, to.motion);
-  to.previous_depth.copy_from(previous_depth);
-  copy_planes(direct, to.direct);
-  copy_planes(emission, to.emission);
-  copy_planes(position, to.position);
-  to.rays = rays;
-  to.non_finite_samples = non_finite;
-}
+/// Copies all of a frame, reusing the storage of `to`. Planes that are empty in `from` become
+/// empty.
+void copy_frame(const Frame& from, Frame& to);
 
 /// Where frames come from: our renderer, or files.
 class FrameSource {
@@ -92,12 +90,20 @@ class FrameSource {
   /// Fills `frame` with the next frame, reusing its storage. False at the end of the sequence.
   [[nodiscard]] virtual bool next(Frame& frame) = 0;
 
-  /// Draws extra(p) further samples of indirect light at each pixel p of the frame that next()
-  /// delivered last, independent of those it holds, and writes their mean to `mean` (0 where
-  /// extra(p) is 0). Adds to frame.rays and frame.non_finite_samples, and changes nothing else of
-  /// `frame`. False, with `mean` untouched, when the source has no more samples to give (files).
-  [[nodiscard]] virtual bool resample(const Plane<std::uint8_t>& extra, Frame& frame,
-                                      Planes<3>& mean) = 0;
+  /// Draws extra(p) further samples of light at each pixel p of the frame that next() delivered
+  /// last, independent of those it holds, and writes their mean to `means`, one for each layer of
+  /// light (0 where extra(p) is 0). Adds to frame.rays and frame.non_finite_samples, and changes
+  /// nothing else of `frame`. False, with `means` untouched, when the source has no more samples to
+  /// give (files).
+  [[nodiscard]] virtual bool resample(const Plane<std::uint8_t>& extra, FrameInput& frame,
+                                      std::span<Planes<3>* const> means) = 0;
 };
+
+/// FrameSource::resample() of a frame with one layer of light.
+[[nodiscard]] inline bool resample(FrameSource& source, const Plane<std::uint8_t>& extra,
+                                   FrameInput& frame, Planes<3>& mean) {
+  Planes<3>* const means[] = {&mean};
+  return source.resample(extra, frame, means);
+}
 
 }  // namespace eigenlight

@@ -19,7 +19,7 @@ namespace eigenlight {
 /// Gives pixel (x, y) the geometry of no surface, normal 0 and depth +inf, but leaves it its id: no
 /// history is found for it and no filter mixes it with others, whatever was there. Its light stays
 /// its own.
-inline void drop_guides(Frame& frame, int x, int y) {
+inline void drop_guides(FrameInput& frame, int x, int y) {
   for (auto& plane : frame.surface.normal) plane(x, y) = 0.0f;
   frame.surface.depth(x, y) = std::numeric_limits<float>::infinity();
 }

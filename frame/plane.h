@@ -1,9 +1,11 @@
-// One image channel in memory: owned, movable, rows on 64-byte lines.
+// One image channel in memory: owned, movable, rows on 64-byte lines; or a view of a caller's
+// memory.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <concepts>
 #include <cstddef>
 #include <cstring>
 #include <memory>
@@ -71,6 +73,10 @@ inline constexpr std::size_t kMargin = 2;
 /// tail loop; padding is never read as data. Up to a line before each row and two behind it may be
 /// read as well: they hold padding, another row or zeros. Moves are cheap, copies are explicit:
 /// clone() allocates, copy_from() does not.
+///
+/// view() makes a plane of memory that a caller owns. It is read-only, its rows need no alignment
+/// beyond that of T, and its first and last rows are copied, because the memory beside them may not
+/// be read; nothing else is.
 template <typename T>
 class Plane {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -96,20 +102,30 @@ class Plane {
     std::memset(memory + free.start - margin, 0, margin + bytes + margin);
   }
 
+  /// A view of `extent` values whose rows start `row_bytes` apart; negative for images from the
+  /// bottom up. `first` is the row y = 0. The memory must outlive the view and stay as it is. Rows
+  /// shorter than a few cache lines are copied: all of them lie too close to the end. Throws
+  /// std::invalid_argument on a bad size, null, a stride shorter than a row, or one that is no
+  /// multiple of the size of T.
+  [[nodiscard]] static Plane view(const T* first, Extent extent, std::ptrdiff_t row_bytes);
+  [[nodiscard]] bool is_view() const { return foreign_ != nullptr; }
+
   [[nodiscard]] Extent extent() const { return extent_; }
   [[nodiscard]] int width() const { return extent_.width; }
   [[nodiscard]] int height() const { return extent_.height; }
   [[nodiscard]] int channels() const { return channels_; }
   [[nodiscard]] bool empty() const { return !data_; }
-  /// Values from the start of one row to the start of the next.
+  /// Values from the start of one row to the start of the next. Not of a view.
   [[nodiscard]] std::size_t stride() const { return stride_; }
 
+  /// Not of a view, here and in all that changes values.
   [[nodiscard]] T* row(int y) {
-    EL_DCHECK(y >= 0 && y < extent_.height);
+    EL_DCHECK(y >= 0 && y < extent_.height && !is_view());
     return data_.get() + stride_ * static_cast<std::size_t>(y);
   }
   [[nodiscard]] const T* row(int y) const {
     EL_DCHECK(y >= 0 && y < extent_.height);
+    if (is_view()) return view_row(y);
     return data_.get() + stride_ * static_cast<std::size_t>(y);
   }
   /// First value of pixel (x, y).
@@ -123,7 +139,7 @@ class Plane {
   void reshape(int channels) {
     check_channels(channels);
     const std::size_t stride = stride_of(channels);
-    if (empty() || stride * static_cast<std::size_t>(extent_.height) > capacity_) {
+    if (empty() || is_view() || stride * static_cast<std::size_t>(extent_.height) > capacity_) {
       *this = Plane(extent_, channels);
       return;
     }
@@ -133,10 +149,20 @@ class Plane {
   }
 
   /// The whole storage, padding included.
-  [[nodiscard]] std::span<T> storage() { return {data_.get(), storage_size()}; }
-  [[nodiscard]] std::span<const T> storage() const { return {data_.get(), storage_size()}; }
+  [[nodiscard]] std::span<T> storage() {
+    EL_DCHECK(!is_view());
+    return {data_.get(), storage_size()};
+  }
+  [[nodiscard]] std::span<const T> storage() const {
+    EL_DCHECK(!is_view());
+    return {data_.get(), storage_size()};
+  }
 
-  void fill(T value) { std::fill_n(data_.get(), storage_size(), value); }
+  void fill(T value) {
+    EL_DCHECK(!is_view());
+    std::fill_n(data_.get(), storage_size(), value);
+  }
+  /// A copy that owns its values, of a view as well.
   [[nodiscard]] Plane clone() const {
     Plane copy;
     if (!empty()) {
@@ -150,7 +176,11 @@ class Plane {
     EL_CHECK(extent_ == other.extent_ && channels_ == other.channels_,
              "planes differ in shape: {}x{}x{} and {}x{}x{}", extent_.width, extent_.height,
              channels_, other.extent_.width, other.extent_.height, other.channels_);
-    if (!empty()) {
+    EL_DCHECK(!is_view());
+    if (other.is_view()) {
+      const std::size_t values = static_cast<std::size_t>(extent_.width * channels_);
+      for (int y = 0; y < extent_.height; ++y) std::copy_n(other.row(y), values, row(y));
+    } else if (!empty()) {
       std::memcpy(static_cast<void*>(data_.get()), other.data_.get(), storage_size() * sizeof(T));
     }
   }
@@ -164,6 +194,12 @@ class Plane {
     }
   };
 
+  // Of a view: the first and the last row lie in data_, one behind the other.
+  [[nodiscard]] const T* view_row(int y) const {
+    if (y == 0) return data_.get();
+    if (y == extent_.height - 1) return data_.get() + stride_;
+    return foreign_ + foreign_stride_ * y;
+  }
   static void check_channels(int channels) {
     EL_CHECK(channels >= 1 && channels <= 64, "a pixel holds 1 to 64 values, not {}", channels);
   }
@@ -180,11 +216,51 @@ class Plane {
   int channels_ = 1;
   std::size_t stride_ = 0, capacity_ = 0;  // values
   std::unique_ptr<T[], Free> data_;
+  const T* foreign_ = nullptr;  // row 0 of a view; null: the values are in data_
+  std::ptrdiff_t foreign_stride_ = 0;
 };
+
+template <typename T>
+Plane<T> Plane<T>::view(const T* first, Extent extent, std::ptrdiff_t row_bytes) {
+  check_extent(extent);
+  constexpr auto kSize = static_cast<std::ptrdiff_t>(sizeof(T));
+  const std::ptrdiff_t apart = row_bytes < 0 ? -row_bytes : row_bytes;
+  EL_CHECK(first != nullptr, "a view of {}x{} values of null", extent.width, extent.height);
+  EL_CHECK(apart >= extent.width * kSize, "rows {} bytes apart: a row of {} values has {} bytes",
+           row_bytes, extent.width, extent.width * kSize);
+  EL_CHECK(row_bytes % kSize == 0, "rows {} bytes apart: expected a multiple of {}", row_bytes,
+           kSize);
+  const std::ptrdiff_t stride = row_bytes / kSize;
+  const auto copy_row = [&](int from, int to, Plane& out) {
+    std::copy_n(first + stride * from, extent.width, out.row(to));
+  };
+  // What may be read behind a row: what pads it to whole lines, and the margin.
+  if (apart < static_cast<std::ptrdiff_t>((detail::kMargin + 1) * kLine)) {
+    Plane copy(extent);
+    for (int y = 0; y < extent.height; ++y) copy_row(y, y, copy);
+    return copy;
+  }
+  Plane view({extent.width, 2});
+  copy_row(0, 0, view);
+  copy_row(extent.height - 1, 1, view);
+  view.extent_ = extent;
+  view.foreign_ = first;
+  view.foreign_stride_ = stride;
+  return view;
+}
 
 /// N planes of floats, one per channel (red, green, blue or x, y, z).
 template <std::size_t N>
-using Planes = std::array<Plane<float>, N>;
+struct Planes : std::array<Plane<float>, N> {
+  template <std::integral Index>
+  [[nodiscard]] Plane<float>& operator[](Index c) {
+    return std::array<Plane<float>, N>::operator[](static_cast<std::size_t>(c));
+  }
+  template <std::integral Index>
+  [[nodiscard]] const Plane<float>& operator[](Index c) const {
+    return std::array<Plane<float>, N>::operator[](static_cast<std::size_t>(c));
+  }
+};
 
 template <std::size_t N>
 [[nodiscard]] Planes<N> make_planes(Extent extent) {
@@ -193,10 +269,12 @@ template <std::size_t N>
   return planes;
 }
 
-/// Gives `plane` the shape `extent`, keeping its storage (and values) when it already has it.
+/// Gives `plane` the shape `extent`, keeping its storage (and values) when it already owns that
+/// much of it; a view becomes a plane of its own.
 template <typename T>
 void ensure_extent(Plane<T>& plane, Extent extent, int channels = 1) {
-  if (plane.empty() || plane.extent() != extent || plane.channels() != channels) {
+  if (plane.empty() || plane.is_view() || plane.extent() != extent ||
+      plane.channels() != channels) {
     plane = Plane<T>(extent, channels);
   }
 }
@@ -207,7 +285,7 @@ void ensure_extent(Planes<N>& planes, Extent extent) {
 }
 
 template <std::size_t N>
-void copy_planes(const std::array<Plane<float>, N>& from, std::array<Plane<float>, N>& to) {
+void copy_planes(const Planes<N>& from, Planes<N>& to) {
   for (std::size_t c = 0; c < N; ++c) to[c].copy_from(from[c]);
 }
 

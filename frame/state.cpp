@@ -1,5 +1,7 @@
 #include "frame/state.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstring>
 #include <iterator>

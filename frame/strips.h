@@ -26,10 +26,11 @@ void for_each_strip(const TileGrid& grid, const std::function<void(const Strip&)
 /// Calls body(part) for the part of each tile that lies in a strip or band, from left to right.
 template <typename Body>
 void for_each_part(const TileGrid& grid, const Strip& band, Body&& body) {
-  const auto& [x0, y0, x1, y1, first] = band.area;
+  const Tile& area = band.area;
   for (int i = 0; i < band.tiles; ++i) {
-    const int left = x0 + i * grid.tile_width();
-    body(Tile{left, y0, std::min(left + grid.tile_width(), x1), y1, first + i});
+    const int left = area.x0 + i * grid.tile_width();
+    const int right = std::min(left + grid.tile_width(), area.x1);
+    body(Tile{{left, area.y0, right, area.y1}, area.index + i});
   }
 }
 

@@ -59,8 +59,9 @@ Tile TileGrid::tile(int index) const {
   EL_DCHECK(index >= 0 && index < count());
   const int x0 = index % columns_ * tile_width_;
   const int y0 = index / columns_ * tile_height_;
-  return {x0, y0, std::min(x0 + tile_width_, extent_.width),
-          std::min(y0 + tile_height_, extent_.height), index};
+  return {{x0, y0, std::min(x0 + tile_width_, extent_.width),
+           std::min(y0 + tile_height_, extent_.height)},
+          index};
 }
 
 void set_thread_count(int threads) {

@@ -5,23 +5,31 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <span>
+#include <vector>
 
 #include "frame/plane.h"
 
 namespace eigenlight {
 
 /// Pixels [x0, x1) x [y0, y1) of an image.
-struct Tile {
+struct Rect {
   int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
-  int index = 0;  ///< in row order over the grid
 
-  [[nodiscard]] int pixels() const { return (x1 - x0) * (y1 - y0); }
+  [[nodiscard]] int width() const { return x1 - x0; }
+  [[nodiscard]] int height() const { return y1 - y0; }
+  [[nodiscard]] int pixels() const { return width() * height(); }
+};
+
+/// A tile of a grid, or the part of one that a loop is at.
+struct Tile : Rect {
+  int index = 0;  ///< in row order over the grid
 };
 
 template <typename T>
-void fill_tile(Plane<T>& plane, const Tile& tile, T value) {
-  for (int y = tile.y0; y < tile.y1; ++y) {
-    std::fill(plane.at(tile.x0, y), plane.at(tile.x1 - 1, y) + plane.channels(), value);
+void fill_rect(Plane<T>& plane, const Rect& area, T value) {
+  for (int y = area.y0; y < area.y1; ++y) {
+    std::fill(plane.at(area.x0, y), plane.at(area.x1 - 1, y) + plane.channels(), value);
   }
 }
 
@@ -44,6 +52,33 @@ class TileGrid {
   Extent extent_;
   int tile_width_, tile_height_;
   int columns_, rows_;
+};
+
+/// One value for each tile of a grid, by the tile or its index.
+template <typename T>
+class PerTile {
+ public:
+  PerTile() = default;
+  explicit PerTile(const TileGrid& grid, const T& value = T{})
+      : values_(static_cast<std::size_t>(grid.count()), value) {}
+
+  [[nodiscard]] T& operator[](int tile) { return values_[static_cast<std::size_t>(tile)]; }
+  [[nodiscard]] const T& operator[](int tile) const {
+    return values_[static_cast<std::size_t>(tile)];
+  }
+  [[nodiscard]] T& operator[](const Tile& tile) { return (*this)[tile.index]; }
+  [[nodiscard]] const T& operator[](const Tile& tile) const { return (*this)[tile.index]; }
+
+  void fill(const T& value) { std::fill(values_.begin(), values_.end(), value); }
+  [[nodiscard]] int size() const { return static_cast<int>(values_.size()); }
+  [[nodiscard]] std::span<const T> values() const { return values_; }
+  [[nodiscard]] auto begin() { return values_.begin(); }
+  [[nodiscard]] auto end() { return values_.end(); }
+  [[nodiscard]] auto begin() const { return values_.begin(); }
+  [[nodiscard]] auto end() const { return values_.end(); }
+
+ private:
+  std::vector<T> values_;
 };
 
 /// Tiles for stages that have no tile size of their own: 64 pixels are whole cache lines of every

@@ -69,7 +69,7 @@ struct LiveSource::State {
   template <typename Count>
   void draw(const Tile& tile, int frame, const Count& count, Planes<3>& mean, RayCounters& tally);
   [[nodiscard]] glm::vec3 direct(glm::ivec2 at, int frame, RayCounters& tally) const;
-  void add_counters(Frame& frame) const;
+  void add_counters(FrameInput& frame) const;
   [[nodiscard]] std::uint32_t key(glm::ivec2 at, std::uint32_t stream, int frame) const {
     return hash_key(options.seed, frame, at.x, at.y, stream);
   }
@@ -158,11 +158,11 @@ void LiveSource::State::render(const Tile& tile, Frame& frame) {
     }
   }
   const auto count = [this](int, int) { return static_cast<std::uint32_t>(options.spp); };
-  draw(tile, frame.index, count, frame.indirect, tally);
+  draw(tile, frame.index, count, frame.lights[0].radiance, tally);
   counters[static_cast<std::size_t>(tile.index)] = tally;
 }
 
-void LiveSource::State::add_counters(Frame& frame) const {
+void LiveSource::State::add_counters(FrameInput& frame) const {
   for (const RayCounters& tally : counters) {
     frame.rays += tally.rays;
     frame.non_finite_samples += tally.non_finite;
@@ -200,13 +200,16 @@ bool LiveSource::next(Frame& frame) {
   return true;
 }
 
-bool LiveSource::resample(const Plane<std::uint8_t>& extra, Frame& frame, Planes<3>& mean) {
+bool LiveSource::resample(const Plane<std::uint8_t>& extra, FrameInput& frame,
+                          std::span<Planes<3>* const> means) {
   State& s = *state_;
   EL_CHECK(s.position > 0 && frame.index == s.frames[s.position - 1],
            "resample: frame {} is not the one that was delivered last", frame.index);
   EL_CHECK(extra.extent() == s.options.extent && frame.extent() == s.options.extent,
            "resample: {}x{} extra samples for {}x{} pixels", extra.width(), extra.height(),
            s.options.extent.width, s.options.extent.height);
+  EL_CHECK(means.size() == 1, "resample: {} layers of light, the source has 1", means.size());
+  Planes<3>& mean = *means[0];
   ensure_extent(mean, s.options.extent);
   for_each_tile(s.grid, [&](const Tile& tile) {
     RayCounters tally;

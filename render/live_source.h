@@ -33,8 +33,8 @@ class LiveSource final : public FrameSource {
   ~LiveSource() override;
 
   [[nodiscard]] bool next(Frame& frame) override;
-  [[nodiscard]] bool resample(const Plane<std::uint8_t>& extra, Frame& frame,
-                              Planes<3>& mean) override;
+  [[nodiscard]] bool resample(const Plane<std::uint8_t>& extra, FrameInput& frame,
+                              std::span<Planes<3>* const> means) override;
 
   /// The antialiased picture of the frame that next() delivered last, with `indirect` (filtered,
   /// over albedo) in place of its own; render_picture(). Changes nothing of `frame`. Throws

@@ -64,7 +64,7 @@ class BasisField {
 
   void clear() { data_.fill(0.0f); }
   /// Forgets the pixels of a tile, whose sides are whole blocks or those of the image.
-  void clear(const Tile& tile) {
+  void clear(const Rect& tile) {
     EL_DCHECK(tile.x0 % kBlock == 0 && (tile.x1 % kBlock == 0 || tile.x1 == extent_.width));
     const int blocks = (tile.x1 - tile.x0 + kBlock - 1) / kBlock;
     for (int y = tile.y0; y < tile.y1; ++y) {
@@ -72,7 +72,7 @@ class BasisField {
     }
   }
   /// The ages of a row of a tile, in whole blocks.
-  void copy_ages(const Tile& row, Plane<float>& to) const {
+  void copy_ages(const Rect& row, Plane<float>& to) const {
     EL_DCHECK(row.x0 % kBlock == 0);
     for (int x = row.x0; x < row.x1; x += kBlock) {
       std::copy_n(ages(x, row.y0), kBlock, to.at(x, row.y0));

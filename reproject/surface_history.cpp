@@ -4,7 +4,7 @@
 
 namespace eigenlight {
 
-void SurfaceHistory::keep(const Frame& frame) {
+void SurfaceHistory::keep(const FrameInput& frame) {
   known_ = true;
   index_ = frame.index;
   camera_ = frame.camera;
@@ -13,7 +13,7 @@ void SurfaceHistory::keep(const Frame& frame) {
   surface_.id.copy_from(frame.surface.id);
 }
 
-void SurfaceHistory::take(Frame& frame) {
+void SurfaceHistory::take(FrameInput& frame) {
   known_ = true;
   index_ = frame.index;
   camera_ = frame.camera;

@@ -50,7 +50,7 @@ struct PreviousSurface {
 ///
 /// Fills taps for pixels [x0, x1) of row y, and weights of 0 behind them up to a whole vector; x0 a
 /// multiple of 16 (vectors), x1 - x0 <= kSegment.
-void compute_taps(const Frame& current, const PreviousSurface& previous, const TapOptions& options,
-                  const Tile& row, TapSegment& taps);
+void compute_taps(const FrameInput& current, const PreviousSurface& previous,
+                  const TapOptions& options, const Rect& row, TapSegment& taps);
 
 }  // namespace eigenlight

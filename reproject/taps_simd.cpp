@@ -90,8 +90,8 @@ struct Query {
   MF valid;
 };
 
-Query LoadQuery(const Frame& current, const PreviousSurface& previous, const TapOptions& options,
-                const Rays& rays, int x, int y) {
+Query LoadQuery(const FrameInput& current, const PreviousSurface& previous,
+                const TapOptions& options, const Rays& rays, int x, int y) {
   const F d;
   const auto load = [&](const Plane<float>& plane) { return hn::LoadU(d, plane.row(y) + x); };
   Query q;
@@ -152,7 +152,7 @@ void PrefetchGuides(const GBuffer& surface, const Plane<float>& depth, int x, in
   prefetch_below(surface.id, x, y);
 }
 
-void PrefetchBelow(const Frame& current, int x, int y) {
+void PrefetchBelow(const FrameInput& current, int x, int y) {
   for (const auto& plane : current.motion) prefetch_below(plane, x, y);
   PrefetchGuides(current.surface, current.previous_depth, x, y);
 }
@@ -194,8 +194,8 @@ void WeighRun(const Run& run, const Query& q, const AxisWeights& wx, const AxisW
   }
 }
 
-void ComputeTaps(const Frame& current, const PreviousSurface& previous, const TapOptions& options,
-                 const Tile& row, TapSegment& taps) {
+void ComputeTaps(const FrameInput& current, const PreviousSurface& previous,
+                 const TapOptions& options, const Rect& row, TapSegment& taps) {
   const F d;
   const I di;
   const Rays rays(previous.camera);
@@ -238,8 +238,8 @@ namespace eigenlight {
 
 HWY_EXPORT(ComputeTaps);
 
-void compute_taps(const Frame& current, const PreviousSurface& previous, const TapOptions& options,
-                  const Tile& row, TapSegment& taps) {
+void compute_taps(const FrameInput& current, const PreviousSurface& previous,
+                  const TapOptions& options, const Rect& row, TapSegment& taps) {
   EL_DCHECK(row.x1 - row.x0 <= kSegment);
   const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(ComputeTaps)(current, previous, options, row, taps);

@@ -10,10 +10,10 @@ namespace eigenlight {
 /// `row`, x0 a multiple of kBlock: bases and age alike. Zero where all weights are zero. Warped
 /// bases are no longer orthogonal. `from` holds finite values and as many bases as `to`; they must
 /// not alias.
-void warp_bases(const BasisField& from, const TapSegment& taps, const Tile& row, BasisField& to);
+void warp_bases(const BasisField& from, const TapSegment& taps, const Rect& row, BasisField& to);
 
 /// The same for one channel.
-void warp_plane(const Plane<float>& from, const TapSegment& taps, const Tile& row,
+void warp_plane(const Plane<float>& from, const TapSegment& taps, const Rect& row,
                 Plane<float>& to);
 
 }  // namespace eigenlight

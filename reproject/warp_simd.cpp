@@ -99,7 +99,7 @@ void WarpBlocks(const BasisField& from, const Run& run, const VF (&weights)[4], 
   }
 }
 
-void WarpBases(const BasisField& from, const TapSegment& taps, const Tile& row, BasisField& to) {
+void WarpBases(const BasisField& from, const TapSegment& taps, const Rect& row, BasisField& to) {
   const F d;
   for (int x = row.x0; x < row.x1; x += static_cast<int>(hn::Lanes(d))) {
     float* out = to.at(x, row.y0);
@@ -129,7 +129,7 @@ VF WarpVector(const Plane<float>& from, const Run& run, const VF (&weights)[4]) 
   return sum;
 }
 
-void WarpPlane(const Plane<float>& from, const TapSegment& taps, const Tile& row,
+void WarpPlane(const Plane<float>& from, const TapSegment& taps, const Rect& row,
                Plane<float>& to) {
   const F d;
   const int last = from.height() - 1;
@@ -157,12 +157,12 @@ namespace eigenlight {
 HWY_EXPORT(WarpBases);
 HWY_EXPORT(WarpPlane);
 
-void warp_bases(const BasisField& from, const TapSegment& taps, const Tile& row, BasisField& to) {
+void warp_bases(const BasisField& from, const TapSegment& taps, const Rect& row, BasisField& to) {
   EL_DCHECK(from.bases() == to.bases() && row.x1 - row.x0 <= kSegment);
   HWY_DYNAMIC_DISPATCH(WarpBases)(from, taps, row, to);
 }
 
-void warp_plane(const Plane<float>& from, const TapSegment& taps, const Tile& row,
+void warp_plane(const Plane<float>& from, const TapSegment& taps, const Rect& row,
                 Plane<float>& to) {
   EL_DCHECK(row.x1 - row.x0 <= kSegment);
   HWY_DYNAMIC_DISPATCH(WarpPlane)(from, taps, row, to);

@@ -38,7 +38,7 @@ void copy_tile(const AtrousPass& pass, const Tile& tile) {
   }
 }
 
-std::int64_t surface_pixels(const Frame& frame, const Tile& tile) {
+std::int64_t surface_pixels(const FrameInput& frame, const Tile& tile) {
   std::int64_t count = 0;
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0; x < tile.x1; ++x) count += frame.surface.id(x, y) != 0 ? 1 : 0;
@@ -70,7 +70,7 @@ Atrous::Atrous(Extent extent, const AtrousOptions& options)
       noisy_(static_cast<std::size_t>(grid_.count())),
       skipped_(noisy_.size()) {}
 
-void Atrous::check(const Frame& guides, const Planes<3>& color, const Plane<float>& variance,
+void Atrous::check(const FrameInput& guides, const Planes<3>& color, const Plane<float>& variance,
                    const Plane<float>* earlier) const {
   const Extent extent = grid_.extent();
   EL_CHECK(guides.extent() == extent && color[0].extent() == extent &&
@@ -79,7 +79,7 @@ void Atrous::check(const Frame& guides, const Planes<3>& color, const Plane<floa
            extent.height);
 }
 
-void Atrous::find_planes(const Frame& guides, std::span<const std::uint8_t> wanted) {
+void Atrous::find_planes(const FrameInput& guides, std::span<const std::uint8_t> wanted) {
   if (options_.skip_planar) {
     planar_.find(guides, wanted);
   } else {
@@ -87,7 +87,7 @@ void Atrous::find_planes(const Frame& guides, std::span<const std::uint8_t> want
   }
 }
 
-void Atrous::run_pass(const Frame& guides, int pass, std::span<const std::uint8_t> wanted,
+void Atrous::run_pass(const FrameInput& guides, int pass, std::span<const std::uint8_t> wanted,
                       Planes<3>& color, Plane<float>& variance, const Plane<float>* earlier) {
   const AtrousPass work{guides,   options_, planar_,        1 << pass,        color,
                         variance, earlier,  scratch_color_, scratch_variance_};
@@ -115,7 +115,7 @@ void Atrous::run_pass(const Frame& guides, int pass, std::span<const std::uint8_
   std::swap(variance, scratch_variance_);
 }
 
-std::int64_t Atrous::process(const Frame& guides, float quiet, Planes<3>& color,
+std::int64_t Atrous::process(const FrameInput& guides, float quiet, Planes<3>& color,
                              Plane<float>& variance, const Plane<float>* earlier) {
   check(guides, color, variance, earlier);
   for_each_tile(grid_, [&](const Tile& tile) {
@@ -137,8 +137,8 @@ std::int64_t Atrous::process(const Frame& guides, float quiet, Planes<3>& color,
   return std::accumulate(skipped_.begin(), skipped_.end(), std::int64_t{0});
 }
 
-void Atrous::process(const Frame& guides, std::span<const std::uint8_t> wanted, Planes<3>& color,
-                     Plane<float>& variance) {
+void Atrous::process(const FrameInput& guides, std::span<const std::uint8_t> wanted,
+                     Planes<3>& color, Plane<float>& variance) {
   check(guides, color, variance, nullptr);
   EL_CHECK(wanted.size() == static_cast<std::size_t>(grid_.count()), "{} wanted flags for {} tiles",
            wanted.size(), grid_.count());

@@ -55,22 +55,22 @@ class Atrous {
 
   /// Returns the number of surface pixels that were skipped in the first pass. `earlier`: g, or
   /// null.
-  std::int64_t process(const Frame& guides, float quiet, Planes<3>& color, Plane<float>& variance,
-                       const Plane<float>* earlier = nullptr);
+  std::int64_t process(const FrameInput& guides, float quiet, Planes<3>& color,
+                       Plane<float>& variance, const Plane<float>* earlier = nullptr);
 
   /// The same, without an earlier picture, for the tiles of stage_tiles() with wanted(tile index)
   /// != 0; the others are copied.
-  void process(const Frame& guides, std::span<const std::uint8_t> wanted, Planes<3>& color,
+  void process(const FrameInput& guides, std::span<const std::uint8_t> wanted, Planes<3>& color,
                Plane<float>& variance);
 
   /// Pixels whose first pass calculated no weights of geometry.
   [[nodiscard]] std::int64_t planar_pixels() const { return planar_.pixels(); }
 
  private:
-  void check(const Frame& guides, const Planes<3>& color, const Plane<float>& variance,
+  void check(const FrameInput& guides, const Planes<3>& color, const Plane<float>& variance,
              const Plane<float>* earlier) const;
-  void find_planes(const Frame& guides, std::span<const std::uint8_t> wanted);
-  void run_pass(const Frame& guides, int pass, std::span<const std::uint8_t> wanted,
+  void find_planes(const FrameInput& guides, std::span<const std::uint8_t> wanted);
+  void run_pass(const FrameInput& guides, int pass, std::span<const std::uint8_t> wanted,
                 Planes<3>& color, Plane<float>& variance, const Plane<float>* earlier);
 
   AtrousOptions options_;

@@ -6,7 +6,7 @@
 namespace eigenlight {
 
 struct AtrousPass {
-  const Frame& guides;
+  const FrameInput& guides;
   const AtrousOptions& options;
   const PlanarBlocks& planar;
   int step;  ///< pixels between taps
@@ -17,6 +17,6 @@ struct AtrousPass {
   Plane<float>& out_variance;
 };
 
-void atrous_tile(const AtrousPass& pass, const Tile& tile);
+void atrous_tile(const AtrousPass& pass, const Rect& tile);
 
 }  // namespace eigenlight

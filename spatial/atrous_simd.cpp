@@ -331,7 +331,7 @@ HWY_INLINE void FilterVector(const AtrousPass& pass, std::span<const TapRow> row
 }
 
 template <int kRadius, LightOf kLightOf>
-void FilterTile(const AtrousPass& pass, const Tile& tile) {
+void FilterTile(const AtrousPass& pass, const Rect& tile) {
   using Full = Weighing<true, kLightOf>;
   using Planar = Weighing<false, kLightOf>;
   const F d;
@@ -360,12 +360,12 @@ void FilterTile(const AtrousPass& pass, const Tile& tile) {
 }
 
 template <LightOf kLightOf>
-void FilterTile(const AtrousPass& pass, const Tile& tile) {
+void FilterTile(const AtrousPass& pass, const Rect& tile) {
   pass.options.radius == 1 ? FilterTile<1, kLightOf>(pass, tile)
                            : FilterTile<2, kLightOf>(pass, tile);
 }
 
-void AtrousTile(const AtrousPass& pass, const Tile& tile) {
+void AtrousTile(const AtrousPass& pass, const Rect& tile) {
   if (!pass.options.looks_at_light()) {
     FilterTile<LightOf::kNone>(pass, tile);
   } else if (pass.earlier == nullptr) {
@@ -384,7 +384,7 @@ namespace eigenlight {
 
 HWY_EXPORT(AtrousTile);
 
-void atrous_tile(const AtrousPass& pass, const Tile& tile) {
+void atrous_tile(const AtrousPass& pass, const Rect& tile) {
   const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(AtrousTile)(pass, tile);
 }

@@ -20,7 +20,7 @@ bool any_wanted(const Plane<std::uint8_t>& wanted, const Tile& tile) {
 }
 
 // Of every eighth pixel of every eighth row: it need not be exact, but the same for all runs.
-float mean_log_depth(const Frame& frame) {
+float mean_log_depth(const FrameInput& frame) {
   double sum = 0.0, count = 0.0;
   for (int y = 0; y < frame.extent().height; y += 8) {
     for (int x = 0; x < frame.extent().width; x += 8) {

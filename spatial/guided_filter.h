@@ -31,7 +31,7 @@ struct GuidedOptions {
 };
 
 struct GuidedInputs {
-  const Frame& guides;  ///< normals, depth and id
+  const FrameInput& guides;  ///< normals, depth and id
   const Planes<3>& signal;
   const Plane<float>& weight;         ///< >= 0, say age; 0: the pixel's signal is not to be used
   const Plane<std::uint8_t>& wanted;  ///< not 0 where an output is needed

@@ -129,6 +129,6 @@ struct GuidedOutput {
 /// The coefficients averaged over the windows that hold each pixel, applied to its guides.
 void guided_apply(const GuidedOutput& where, const GuidedScratch& s, Planes<3>& out);
 
-void guided_run(const GuidedWork& work, const Tile& run, GuidedScratch& scratch, Planes<3>& out);
+void guided_run(const GuidedWork& work, const Rect& run, GuidedScratch& scratch, Planes<3>& out);
 
 }  // namespace eigenlight

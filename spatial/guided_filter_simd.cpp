@@ -108,7 +108,7 @@ void Fetch(const GuidedWindow& w, const float* rows, const float* sums, const Le
 template <int kN>
 class Filter {
  public:
-  Filter(const GuidedWork& work, const Tile& run, GuidedScratch& scratch)
+  Filter(const GuidedWork& work, const Rect& run, GuidedScratch& scratch)
       : work_(work),
         run_(run),
         s_(scratch),
@@ -360,14 +360,14 @@ class Filter {
   }
 
   const GuidedWork& work_;
-  const Tile& run_;
+  const Rect& run_;
   GuidedScratch& s_;
   int r_;
   int ahead_;   // blocks from a pixel's own to the last of the windows around it
   int blocks_;  // of columns
 };
 
-void GuidedRun(const GuidedWork& work, const Tile& run, GuidedScratch& s, Planes<3>& out) {
+void GuidedRun(const GuidedWork& work, const Rect& run, GuidedScratch& s, Planes<3>& out) {
   switch (work.options.guides) {
     case Guides::kGrayNormal:
       return Filter<1>(work, run, s).Run(out);
@@ -387,7 +387,7 @@ namespace eigenlight {
 
 HWY_EXPORT(GuidedRun);
 
-void guided_run(const GuidedWork& work, const Tile& run, GuidedScratch& scratch, Planes<3>& out) {
+void guided_run(const GuidedWork& work, const Rect& run, GuidedScratch& scratch, Planes<3>& out) {
   const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(GuidedRun)(work, run, scratch, out);
 }

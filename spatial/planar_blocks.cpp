@@ -27,7 +27,7 @@ PlanarBlocks::PlanarBlocks(Extent extent, float tolerance)
            tolerance);
 }
 
-void PlanarBlocks::find(const Frame& guides, std::span<const std::uint8_t> chosen) {
+void PlanarBlocks::find(const FrameInput& guides, std::span<const std::uint8_t> chosen) {
   const Extent extent = grid_.extent();
   EL_CHECK(guides.extent() == extent, "planar blocks made for {}x{}: got {}x{}", extent.width,
            extent.height, guides.extent().width, guides.extent().height);
@@ -40,7 +40,7 @@ void PlanarBlocks::find(const Frame& guides, std::span<const std::uint8_t> chose
       if (chosen[static_cast<std::size_t>(tile.index)] == 0) {
         std::fill_n(blocks, (tile.x1 - tile.x0 + kSide - 1) / kSide, Block{});
       } else {
-        find_planes(guides, tolerance_, {tile.x0, y, tile.x1, std::min(y + kSide, tile.y1), first},
+        find_planes(guides, tolerance_, {tile.x0, y, tile.x1, std::min(y + kSide, tile.y1)},
                     blocks);
       }
     }

@@ -28,7 +28,7 @@ class PlanarBlocks {
 
   /// Looks at the tiles of stage_tiles() with chosen(tile index) != 0; blocks of others are not
   /// planar. Throws std::invalid_argument if extents or the number of tiles differ.
-  void find(const Frame& guides, std::span<const std::uint8_t> chosen);
+  void find(const FrameInput& guides, std::span<const std::uint8_t> chosen);
   /// No block is planar.
   void clear();
 

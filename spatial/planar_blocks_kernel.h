@@ -13,7 +13,7 @@ inline constexpr float kPlanarTurn = 1e-6f;
 
 /// Fills blocks[i] for the block that starts at column area.x0 + 8 i; `area` is one row of blocks,
 /// cut off by the image.
-void find_planes(const Frame& guides, float tolerance, const Tile& area,
+void find_planes(const FrameInput& guides, float tolerance, const Rect& area,
                  PlanarBlocks::Block* blocks);
 
 }  // namespace eigenlight

@@ -20,7 +20,7 @@ using F = hn::CappedTag<float, PlanarBlocks::kSide>;
 using VF = hn::Vec<F>;
 
 // The plane of pixel (x, y).
-PlanarBlocks::Block PlaneOf(const Frame& guides, int x, int y) {
+PlanarBlocks::Block PlaneOf(const FrameInput& guides, int x, int y) {
   PlanarBlocks::Block block;
   const auto& normal = guides.surface.normal;
   block.depth = guides.surface.depth(x, y);
@@ -36,7 +36,7 @@ PlanarBlocks::Block PlaneOf(const Frame& guides, int x, int y) {
 
 // Whether all pixels of `area` lie in the plane. Products and sums are rounded one by one, so that
 // every instruction set comes to the same answer.
-bool HoldsAll(const Frame& guides, float tolerance, const Tile& area,
+bool HoldsAll(const FrameInput& guides, float tolerance, const Rect& area,
               const PlanarBlocks::Block& block) {
   const F d;
   const hn::RebindToUnsigned<F> du;
@@ -76,10 +76,10 @@ bool HoldsAll(const Frame& guides, float tolerance, const Tile& area,
   return true;
 }
 
-void FindPlanes(const Frame& guides, float tolerance, const Tile& area,
+void FindPlanes(const FrameInput& guides, float tolerance, const Rect& area,
                 PlanarBlocks::Block* blocks) {
   for (int x = area.x0; x < area.x1; x += PlanarBlocks::kSide) {
-    const Tile block{x, area.y0, std::min(x + PlanarBlocks::kSide, area.x1), area.y1, 0};
+    const Rect block{x, area.y0, std::min(x + PlanarBlocks::kSide, area.x1), area.y1};
     PlanarBlocks::Block& out = *blocks++;
     out = PlaneOf(guides, x, area.y0);
     out.is_planar = out.is_planar && HoldsAll(guides, tolerance, block, out);
@@ -95,7 +95,7 @@ namespace eigenlight {
 
 HWY_EXPORT(FindPlanes);
 
-void find_planes(const Frame& guides, float tolerance, const Tile& area,
+void find_planes(const FrameInput& guides, float tolerance, const Rect& area,
                  PlanarBlocks::Block* blocks) {
   const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(FindPlanes)(guides, tolerance, area, blocks);

@@ -43,7 +43,7 @@ int SampleBudget::find_level(const AgeHistogram& pixels, std::int64_t limit, int
   return level;
 }
 
-BudgetStats SampleBudget::process(const Frame& frame, const Plane<float>& age,
+BudgetStats SampleBudget::process(const FrameInput& frame, const Plane<float>& age,
                                   Plane<std::uint8_t>& extra) {
   EL_CHECK(frame.extent() == grid_.extent() && age.extent() == grid_.extent() &&
                extra.extent() == grid_.extent(),

@@ -37,7 +37,7 @@ class SampleBudget {
   SampleBudget(Extent extent, const BudgetOptions& options);
 
   /// Throws std::invalid_argument if extents differ.
-  BudgetStats process(const Frame& frame, const Plane<float>& age, Plane<std::uint8_t>& extra);
+  BudgetStats process(const FrameInput& frame, const Plane<float>& age, Plane<std::uint8_t>& extra);
 
  private:
   /// Samples at which a pixel is left alone, whatever the budget.

@@ -1,5 +1,7 @@
 #include "temporal/methods.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <string>
 #include <utility>

@@ -1,5 +1,6 @@
 #include "render/antialias/options.h"
 
+#include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
@@ -34,7 +35,7 @@ AntialiasOptions parse_antialias(std::string_view text) {
   const auto mode = static_cast<AntialiasMode>(found - kNames.begin());
   const bool counts = name == kSupersample;
   EL_CHECK(found != kNames.end() && (counts || colon == std::string_view::npos),
-           "unknown aa '{}'; known: {}:N", text, fmt::join(kNames, ", "));
+           "unknown aa '{}'; known: {}:N", text, fmt::format("{}", fmt::join(kNames, ", ")));
   if (!counts) return {mode, 1};
   return {mode, parse_samples(text.substr(std::min(colon, text.size() - 1) + 1), text)};
 }

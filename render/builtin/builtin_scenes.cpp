@@ -1,5 +1,6 @@
 #include "render/builtin/builtin_scenes.h"
 
+#include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <glm/gtc/matrix_transform.hpp>

@@ -121,7 +121,7 @@ EyeHit trace_eye(const World& world, const Camera& camera, const glm::vec2& pixe
   return eye;
 }
 
-std::int64_t trace_guides(const World& world, const PreviousView& previous, const Tile& tile,
+std::int64_t trace_guides(const World& world, const PreviousView& previous, const Rect& tile,
                           Frame& frame, Plane<GuideHit>& hits) {
   const float spread = 1.0f / frame.camera.focal;
   for (int y = tile.y0; y < tile.y1; ++y) {

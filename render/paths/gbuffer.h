@@ -48,7 +48,7 @@ struct PreviousView {
 /// same direction, for the sky) under the previous pose and camera. A point that was not in front
 /// of the previous camera gets kUnseenMotion and its previous_depth, which is then not positive.
 /// Returns the number of rays. Planes of `frame` and `hits` must have the frame's size.
-std::int64_t trace_guides(const World& world, const PreviousView& previous, const Tile& tile,
+std::int64_t trace_guides(const World& world, const PreviousView& previous, const Rect& tile,
                           Frame& frame, Plane<GuideHit>& hits);
 
 /// Pixels, in x and y: outside every image.

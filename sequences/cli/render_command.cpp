@@ -13,6 +13,7 @@
 #include "sequences/runs/run_directory.h"
 #include "sequences/runs/run_log.h"
 #include "sequences/runs/scene_source.h"
+#include "temporal/methods.h"
 #include "temporal/stage_clock.h"
 
 namespace eigenlight {

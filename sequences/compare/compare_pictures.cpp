@@ -76,7 +76,7 @@ Planes<3> difference(const Planes<3>& a, const Planes<3>& b) {
 }
 
 // Mean square over a rectangle and the channels; NaN and Inf are left out.
-double mean_square(const Planes<3>& error, const Tile& tile) {
+double mean_square(const Planes<3>& error, const Rect& tile) {
   double sum = 0.0, count = 0.0;
   for (const Plane<float>& plane : error) {
     for (int y = tile.y0; y < std::min(tile.y1, plane.height()); ++y) {
@@ -97,7 +97,7 @@ Plane<std::uint8_t> heat_map(const Planes<3>& error) {
   Plane<std::uint8_t> picture(Developer::shrunk(extent, factor), 3);
   parallel_for(picture.height(), [&](int y) {
     for (int x = 0; x < picture.width(); ++x) {
-      const Tile block{x * factor, y * factor, (x + 1) * factor, (y + 1) * factor, 0};
+      const Rect block{x * factor, y * factor, (x + 1) * factor, (y + 1) * factor};
       const double root = std::max(std::sqrt(mean_square(error, block)), kLow);
       const auto color = ramp_color(std::log(root / kLow) / std::log(kHigh / kLow));
       std::copy(color.begin(), color.end(), picture.at(x, y));
@@ -106,7 +106,7 @@ Plane<std::uint8_t> heat_map(const Planes<3>& error) {
   return picture;
 }
 
-Planes<3> cut_out(const Planes<3>& image, const Tile& tile) {
+Planes<3> cut_out(const Planes<3>& image, const Rect& tile) {
   Planes<3> out = make_planes<3>({tile.x1 - tile.x0, tile.y1 - tile.y0});
   for (std::size_t c = 0; c < 3; ++c) {
     for (int y = tile.y0; y < tile.y1; ++y) {

@@ -36,7 +36,7 @@ void check_places(const ExternalMethod& method) {
     const std::string place = (*it)[2];
     EL_CHECK(std::find(kPlaces.begin(), kPlaces.end(), place) != kPlaces.end(),
              "external '{}': unknown place '{{{}}}'; known: {{{}}}", method.name, place,
-             fmt::join(kPlaces, "}, {"));
+             fmt::format("{}", fmt::join(kPlaces, "}, {")));
   }
   for (const std::string_view needed : {"color", "output"}) {
     EL_CHECK(has_place(method.command, needed), "external '{}': its command has no {{{}}}",
@@ -142,7 +142,7 @@ std::string ExternalRun::path(std::string_view role, int frame) const {
 void ExternalRun::add(const Frame& frame) const {
   if (!std::binary_search(frames().begin(), frames().end(), frame.index)) return;
   Planes<3> color;
-  modulate(frame.surface.albedo, frame.indirect, color);
+  modulate(frame.surface.albedo, frame.lights[0].radiance, color);
   write_layer(path("color", frame.index), "RGB", color);
   if (has_place(method_.command, "albedo")) {
     write_layer(path("albedo", frame.index), "RGB", frame.surface.albedo);

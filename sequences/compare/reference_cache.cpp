@@ -69,7 +69,7 @@ std::uint64_t renderer_hash(const AnimatedScene& animated, const RenderOptions& 
   Frame frame;
   if (!source.next(frame)) throw std::logic_error("a source of one frame has one");
   Planes<3> light;
-  modulate(frame.surface.albedo, frame.indirect, light);
+  modulate(frame.surface.albedo, frame.lights[0].radiance, light);
   return hash_rows(light);
 }
 
@@ -106,7 +106,7 @@ void ReferenceCache::render(Half half, const std::vector<int>& frames,
   Frame frame;
   Planes<3> light;
   while (source.next(frame)) {
-    modulate(frame.surface.albedo, frame.indirect, light);
+    modulate(frame.surface.albedo, frame.lights[0].radiance, light);
     const ExrChannel channels[] = {{"indirect.R", ExrType::kFloat, &light[0]},
                                    {"indirect.G", ExrType::kFloat, &light[1]},
                                    {"indirect.B", ExrType::kFloat, &light[2]},

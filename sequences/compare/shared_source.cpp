@@ -18,8 +18,9 @@ bool SharedSource::next(Frame& frame) {
   return true;
 }
 
-bool SharedSource::resample(const Plane<std::uint8_t>& extra, Frame& frame, Planes<3>& mean) {
-  return live_.resample(extra, frame, mean);
+bool SharedSource::resample(const Plane<std::uint8_t>& extra, FrameInput& frame,
+                            std::span<Planes<3>* const> means) {
+  return live_.resample(extra, frame, means);
 }
 
 }  // namespace eigenlight

@@ -25,8 +25,8 @@ class SharedSource final : public FrameSource {
   /// the first.
   [[nodiscard]] bool next(Frame& frame) override;
   /// Of the method that called next() last.
-  [[nodiscard]] bool resample(const Plane<std::uint8_t>& extra, Frame& frame,
-                              Planes<3>& mean) override;
+  [[nodiscard]] bool resample(const Plane<std::uint8_t>& extra, FrameInput& frame,
+                              std::span<Planes<3>* const> means) override;
 
  private:
   LiveSource& live_;
@@ -44,9 +44,9 @@ class Turn final : public FrameSource {
 
   /// False, as at the end of a sequence, from the second call on.
   [[nodiscard]] bool next(Frame& frame) override { return ++calls_ == 1 && shared_.next(frame); }
-  [[nodiscard]] bool resample(const Plane<std::uint8_t>& extra, Frame& frame,
-                              Planes<3>& mean) override {
-    return shared_.resample(extra, frame, mean);
+  [[nodiscard]] bool resample(const Plane<std::uint8_t>& extra, FrameInput& frame,
+                              std::span<Planes<3>* const> means) override {
+    return shared_.resample(extra, frame, means);
   }
   [[nodiscard]] bool was_read_ahead() const { return calls_ > 1; }
 

@@ -51,13 +51,13 @@ struct Shots {
     double sum = 0.0;
     for (std::size_t f = 0; f < noisy.size(); ++f) {
       if (filter == nullptr) {
-        sum += error(f, noisy[f].indirect);
+        sum += error(f, noisy[f].lights[0].radiance);
         continue;
       }
       Plane<float> weight(noisy[f].extent());
       weight.fill(1.0f);
       Planes<3> out = make_planes<3>(noisy[f].extent());
-      filter->process({noisy[f], noisy[f].indirect, weight}, out);
+      filter->process({noisy[f], noisy[f].lights[0].radiance, weight}, out);
       sum += error(f, out);
     }
     return sum;
@@ -106,7 +106,7 @@ std::array<Result, kSpp.size()> measure_scene(const PaperRun& run, const char* n
     run.step(fmt::format("Fig. 8, {}, reference {}", name, half + 1));
     const std::uint32_t seed = half == 0 ? kPaperReferenceA : kPaperReferenceB;
     for (const Frame& frame : scene.render(kReferenceSpp, frames, seed)) {
-      shots.truth[half].push_back(scene.shown(frame, frame.indirect));
+      shots.truth[half].push_back(scene.shown(frame, frame.lights[0].radiance));
     }
   }
   std::array<Result, kSpp.size()> results;

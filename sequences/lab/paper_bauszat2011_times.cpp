@@ -32,7 +32,7 @@ double of_filter(SpatialFilter& filter, const Frame& frame) {
   weight.fill(1.0f);
   Planes<3> out = make_planes<3>(frame.extent());
   StageClock clock;
-  filter.process({frame, frame.indirect, weight}, out);
+  filter.process({frame, frame.lights[0].radiance, weight}, out);
   return clock.lap().cpu_ms;
 }
 

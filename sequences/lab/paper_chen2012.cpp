@@ -7,6 +7,7 @@
 
 #include "sequences/lab/paper_reruns.h"
 #include "sequences/lab/paper_scene.h"
+#include "temporal/methods.h"
 #include "temporal/stage_clock.h"
 
 namespace eigenlight {
@@ -60,7 +61,7 @@ StageTimes time_stages(const std::vector<Frame>& frames, int bases) {
   const Extent extent = frames.front().extent();
   const auto chen = make_denoiser("chen2012", {extent, bases});
   const auto ours = make_denoiser("eigenlight", {extent, bases});
-  RecordedSource for_chen(frames), for_ours(frames);
+  MemorySource for_chen(frames), for_ours(frames);
   StageTimes times;
   const double share = 1.0 / static_cast<double>(frames.size() - 1);
   for (std::size_t i = 0; i < frames.size(); ++i) {

@@ -18,7 +18,7 @@ constexpr int kEigenimages = 4, kEpochs = 70;
 float weight_of_age(float age) { return std::min(1.0f, (1.0f + Chen2012::kAmnesia) / age); }
 
 bool is_usable(const Frame& frame, int x, int y) {
-  const auto& u = frame.indirect;
+  const auto& u = frame.lights[0].radiance;
   return frame.surface.id(x, y) != 0 && std::isfinite(u[0](x, y) + u[1](x, y) + u[2](x, y));
 }
 
@@ -36,7 +36,7 @@ class Learner {
         weight_(x, y) = is_usable(frame, x, y) ? weight_of_age(age_(x, y)) : 0.0f;
       }
     }
-    pca_.update({frame.indirect, weight_, number_}, bases_);
+    pca_.update({frame.lights[0].radiance, weight_, number_}, bases_);
   }
   [[nodiscard]] const BasisField& bases() const { return bases_; }
 
@@ -58,7 +58,9 @@ Eigen::MatrixXd data_matrix(const std::vector<Frame>& frames) {
       for (int x = 0; x < extent.width; ++x) {
         for (std::size_t c = 0; c < 3; ++c) {
           data(row++, static_cast<Eigen::Index>(f)) =
-              is_usable(frames[f], x, y) ? static_cast<double>(frames[f].indirect[c](x, y)) : 0.0;
+              is_usable(frames[f], x, y)
+                  ? static_cast<double>(frames[f].lights[0].radiance[c](x, y))
+                  : 0.0;
         }
       }
     }

@@ -33,7 +33,7 @@ AnalyticOptions card(std::uint32_t seed) {
       for (int x = kCardLeft; x < kCardRight; ++x) {
         frame.surface.id(x, y) = 2;
         frame.surface.depth(x, y) = frame.previous_depth(x, y) = 0.5f * AnalyticSource::kDepth;
-        for (auto& plane : frame.indirect) plane(x, y) *= 0.3f;
+        for (auto& plane : frame.lights[0].radiance) plane(x, y) *= 0.3f;
       }
     }
   };
@@ -56,7 +56,7 @@ Sums mean_pictures(int bases, const ChenOptions& parts) {
     for (Frame& frame : frames) {
       if (!source.next(frame)) throw std::logic_error("a source ends before its last frame");
     }
-    RecordedSource recorded(frames);
+    MemorySource recorded(frames);
     for (int i = -kHidden; const Planes<3>* light = method.step(recorded); ++i) {
       if (i < 0) continue;
       Planes<3>& sum = sums[seed % 2][static_cast<std::size_t>(i)];

@@ -8,6 +8,7 @@
 #include "sequences/lab/paper_scene.h"
 #include "spatial/rivals/cross_bilateral.h"
 #include "temporal/baselines/frame_by_frame.h"
+#include "temporal/methods.h"
 
 namespace eigenlight {
 namespace {
@@ -98,7 +99,7 @@ std::array<std::vector<Planes<3>>, 2> references(const PaperRun& run, const Pape
     for (const int frame : at) {
       run.step(fmt::format("Fig. 10, reference {} of frame {}", half + 1, frame));
       const std::vector<Frame> one = scene.render(kReferenceSpp, {frame}, seed);
-      truth[half].push_back(scene.shown(one.front(), one.front().indirect));
+      truth[half].push_back(scene.shown(one.front(), one.front().lights[0].radiance));
     }
   }
   return truth;

@@ -32,7 +32,7 @@ struct Times {
 double picture_ms(LiveSource& source, const AntialiasOptions& options, const Frame& frame) {
   Planes<3> color;
   StageClock clock;
-  source.picture(options, frame, frame.indirect, color);
+  source.picture(options, frame, frame.lights[0].radiance, color);
   return clock.lap().cpu_ms;
 }
 
@@ -86,9 +86,9 @@ Planes<3> guide_colors(const Frame& frame) {
   for (std::size_t c = 0; c < 3; ++c) {
     for (int y = 0; y < frame.extent().height; ++y) {
       for (int x = 0; x < frame.extent().width; ++x) {
-        color[c](x, y) =
-            frame.surface.albedo[c](x, y) * (frame.direct[c](x, y) + frame.indirect[c](x, y)) +
-            frame.emission[c](x, y);
+        color[c](x, y) = frame.surface.albedo[c](x, y) *
+                             (frame.direct[c](x, y) + frame.lights[0].radiance[c](x, y)) +
+                         frame.emission[c](x, y);
       }
     }
   }
@@ -106,7 +106,7 @@ std::vector<Planes<3>> pictures(const PaperScene& scene, const RenderOptions& op
     if (way.mode == AntialiasMode::kNone) {
       color = guide_colors(frame);
     } else {
-      source.picture(way, frame, frame.indirect, color);
+      source.picture(way, frame, frame.lights[0].radiance, color);
     }
     all.push_back(std::move(color));
   }

@@ -60,15 +60,9 @@ Planes<3> PaperScene::shown(const Frame& frame, const Planes<3>& light) const {
   return out;
 }
 
-bool RecordedSource::next(Frame& frame) {
-  if (position_ == frames_.size()) return false;
-  copy_frame(frames_[position_++], frame);
-  return true;
-}
-
 std::vector<Planes<3>> run_method(const PaperScene& scene, Denoiser& method,
                                   const std::vector<Frame>& frames) {
-  RecordedSource source(frames);
+  MemorySource source(frames);
   std::vector<Planes<3>> pictures;
   while (const Planes<3>* light = method.step(source)) {
     pictures.push_back(scene.shown(method.frame(), *light));

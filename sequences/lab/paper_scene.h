@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "frame/memory_source.h"
 #include "render/live_source.h"
 #include "sequences/runs/flythrough.h"
 #include "temporal/denoiser.h"
@@ -42,21 +43,6 @@ class PaperScene {
   Extent extent_;
   std::unique_ptr<Animation> flight_;
   std::unique_ptr<Animation> rest_;  // flight_ from its first view; null for kFlight
-};
-
-/// Frames out of memory. Has no further samples.
-class RecordedSource final : public FrameSource {
- public:
-  /// `frames` must outlive this.
-  explicit RecordedSource(const std::vector<Frame>& frames) : frames_(frames) {}
-  [[nodiscard]] bool next(Frame& frame) override;
-  [[nodiscard]] bool resample(const Plane<std::uint8_t>&, Frame&, Planes<3>&) override {
-    return false;
-  }
-
- private:
-  const std::vector<Frame>& frames_;
-  std::size_t position_ = 0;
 };
 
 /// What a method makes of each frame, as shown.

@@ -36,7 +36,7 @@ Planes<3> filter(const Down& down, const Up& up, const PyramidInputs& in) {
   auto levels = make_pyramid_levels(extent, Down::kAttributes, passes);
   const auto level = [&](int l) -> PyramidLevel& { return levels[static_cast<std::size_t>(l)]; };
   level(0).attributes.copy_from(in.attributes);
-  const Tile all{0, 0, extent.width, extent.height, 0};
+  const Rect all{0, 0, extent.width, extent.height};
   load_pyramid_values(in.signal, in.weight, all, level(0).values);
   for (int l = 0; l < passes; ++l) {
     downsample_pyramid(down, level(l), static_cast<float>(1 << (2 * l)), level(l + 1));

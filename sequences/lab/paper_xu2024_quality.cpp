@@ -95,7 +95,7 @@ std::array<UseFigures, 4> measure_uses(const PaperRun& run, Extent extent) {
     const PaperScene scene(name, Perturbation::kNone, extent, PaperScene::View::kFlight);
     const std::vector<Frame> frames = scene.render(1, {run.frames.back()});
     const Frame& frame = frames.front();
-    uses[0].add(measure(diffuse_use(frame, frame.indirect, scene.exposure())));
+    uses[0].add(measure(diffuse_use(frame, frame.lights[0].radiance, scene.exposure())));
     uses[1].add(measure(reflection_use(frame)));
     uses[2].add(measure(depth_of_field_use(frame)));
   }
@@ -150,8 +150,8 @@ std::string size_note(Extent extent) {
 
 // Light as it comes, not compressed, compared as display values.
 Ways measure_raw(const Frame& frame, float exposure) {
-  auto use = diffuse_use(frame, frame.indirect, exposure);
-  copy_planes(frame.indirect, use.signal);
+  auto use = diffuse_use(frame, frame.lights[0].radiance, exposure);
+  copy_planes(frame.lights[0].radiance, use.signal);
   const Extent extent = frame.extent();
   Planes<3> wanted = make_planes<3>(extent), out = make_planes<3>(extent);
   bilateral_filter(use.edge, use.inputs(), wanted);
@@ -216,7 +216,7 @@ void xu_inputs(const PaperRun& run, PaperReport& report) {
     for (const int spp : {1, 4, 16}) {
       const Frame frame = std::move(scene.render(spp, {run.frames.back()}).front());
       if (spp == 1) add(measure_raw(frame, scene.exposure()));
-      add(measure(diffuse_use(frame, frame.indirect, scene.exposure())));
+      add(measure(diffuse_use(frame, frame.lights[0].radiance, scene.exposure())));
     }
     const auto mean = make_denoiser("mean", {extent, 1});
     LiveSource source = scene.source(1, run.frames);

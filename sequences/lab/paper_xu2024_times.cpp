@@ -33,11 +33,12 @@ void time_filters(const Frame& frame, int turns, std::span<Timed> filters) {
   Plane<float> weight(frame.extent());
   weight.fill(1.0f);
   Planes<3> out = make_planes<3>(frame.extent());
-  for (Timed& timed : filters) timed.filter->process({frame, frame.indirect, weight}, out);
+  for (Timed& timed : filters)
+    timed.filter->process({frame, frame.lights[0].radiance, weight}, out);
   for (int turn = 0; turn < turns; ++turn) {
     for (Timed& timed : filters) {
       StageClock clock;
-      timed.filter->process({frame, frame.indirect, weight}, out);
+      timed.filter->process({frame, frame.lights[0].radiance, weight}, out);
       timed.ms = std::min(timed.ms, clock.lap().cpu_ms);
     }
   }

@@ -1,5 +1,7 @@
 #include "sequences/lab/train_pyramid.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -98,7 +100,7 @@ PyramidExample frame_example(const std::string& scene_name, int number, int radi
       weight(x, y) = 1.0f;
       for (std::size_t c = 0; c < 3; ++c) {
         attributes.at(x, y)[c] = frame.surface.normal[c](fx, fy);
-        const float sample = frame.indirect[c](fx, fy);
+        const float sample = frame.lights[0].radiance[c](fx, fy);
         light[c](x, y) = sample / (1.0f + sample);
       }
       attributes.at(x, y)[3] = frame.surface.depth(fx, fy);

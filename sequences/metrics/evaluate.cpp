@@ -1,5 +1,7 @@
 #include "sequences/metrics/evaluate.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <map>

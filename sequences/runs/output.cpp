@@ -37,7 +37,7 @@ std::vector<Layer> parse_layers(std::string_view text) {
     const std::string_view name = rest.substr(0, comma);
     const auto known = std::find(kLayerNames.begin(), kLayerNames.end(), name);
     EL_CHECK(known != kLayerNames.end(), "unknown layer '{}'; known: {}", name,
-             fmt::join(kLayerNames, ", "));
+             fmt::format("{}", fmt::join(kLayerNames, ", ")));
     chosen[static_cast<std::size_t>(known - kLayerNames.begin())] = true;
     rest.remove_prefix(comma == std::string_view::npos ? rest.size() : comma + 1);
   }
@@ -122,7 +122,7 @@ void FrameWriter::add(Layer layer, const DenoisedFrame& denoised) {
       modulate(albedo, denoised.indirect, scratch);
       return add_planes("indirect", "RGB", scratch.data(), false);
     case Layer::kNoisy:
-      modulate(albedo, frame.indirect, scratch);
+      modulate(albedo, frame.lights[0].radiance, scratch);
       return add_planes("noisy", "RGB", scratch.data(), false);
     case Layer::kDirect:
       modulate(albedo, frame.direct, scratch);

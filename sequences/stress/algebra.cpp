@@ -1,4 +1,6 @@
 // Frames and bases that leave the algebra little to work with.
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
 #include <functional>
@@ -54,9 +56,9 @@ StressFinding check_identical(Lab& lab) {
   options.edit = [&first](Frame& frame) {
     if (frame.index == 0) {
       first.resize(kExtent);
-      copy_planes(frame.indirect, first.indirect);
+      copy_planes(frame.lights[0].radiance, first.lights[0].radiance);
     }
-    copy_planes(first.indirect, frame.indirect);
+    copy_planes(first.lights[0].radiance, frame.lights[0].radiance);
   };
   StressRun run(lab, options);
   while (run.step()) {
@@ -65,7 +67,7 @@ StressFinding check_identical(Lab& lab) {
       for (int y = 0; y < kExtent.height; ++y) {
         for (int x = 0; x < kExtent.width; ++x) {
           shown += static_cast<double>(run.picture()[c](x, y));
-          given += static_cast<double>(first.indirect[c](x, y));
+          given += static_cast<double>(first.lights[0].radiance[c](x, y));
         }
       }
     }

@@ -80,9 +80,10 @@ class AnalyticSource final : public FrameSource {
     return true;
   }
 
-  [[nodiscard]] bool resample(const Plane<std::uint8_t>& extra, Frame& frame,
-                              Planes<3>& mean) override {
+  [[nodiscard]] bool resample(const Plane<std::uint8_t>& extra, FrameInput& frame,
+                              std::span<Planes<3>* const> means) override {
     ++resampled_;
+    Planes<3>& mean = *means[0];
     for (int y = 0; y < options_.extent.height; ++y) {
       for (int x = 0; x < options_.extent.width; ++x) {
         const int count = frame.surface.id(x, y) == 0 ? 0 : extra(x, y);
@@ -154,7 +155,7 @@ class AnalyticSource final : public FrameSource {
       const auto plane = static_cast<std::size_t>(c);
       frame.surface.normal[plane](p.x, p.y) = surface && c == 2 ? -1.0f : 0.0f;
       frame.surface.albedo[plane](p.x, p.y) = surface ? 0.25f * static_cast<float>(c + 1) : 0.0f;
-      frame.indirect[plane](p.x, p.y) =
+      frame.lights[0].radiance[plane](p.x, p.y) =
           surface ? sample_mean(p, c, {frame.index, options_.spp}) : 0.0f;
       frame.direct[plane](p.x, p.y) = surface ? 0.5f : 0.0f;
       frame.emission[plane](p.x, p.y) = surface ? 0.0f : 2.0f;

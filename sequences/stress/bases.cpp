@@ -1,4 +1,6 @@
 // What becomes of the bases over thousands of frames: the algebra needs them apart from each other.
+#include <fmt/format.h>
+
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
@@ -77,7 +79,7 @@ StressFinding check_orthogonality(Lab& lab) {
 double condition(const EigenState& state, const Frame& frame) {
   TileSums sums;
   const SumInputs in{state.field, frame, state.variance, state.memory.active()};
-  const Tile all{0, 0, kExtent.width, kExtent.height, 0};
+  const Rect all{0, 0, kExtent.width, kExtent.height};
   accumulate_tile(in, all, sums);
   admit_outliers(in, all, sums);
   const auto energy = [&](int k) { return sums.gram[static_cast<std::size_t>(packed(k, k))]; };

@@ -1,4 +1,6 @@
 // The same bits, however the work is done.
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "frame/tiles.h"
@@ -17,7 +19,7 @@ AnalyticOptions busy(Extent extent = {191, 107}) {
     const float edge = at.x - 20.0f * static_cast<float>(frame);
     return 1.0f + 0.8f * std::tanh(0.2f * edge);
   };
-  options.edit = [](Frame& frame) { frame.indirect[0](30, 40) = INFINITY; };
+  options.edit = [](Frame& frame) { frame.lights[0].radiance[0](30, 40) = INFINITY; };
   return options;
 }
 

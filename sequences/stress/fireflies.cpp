@@ -1,4 +1,6 @@
 // Samples that are far too bright: no energy lost or invented beyond a bias, no trail, no block.
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
 
@@ -34,7 +36,7 @@ AnalyticOptions with_fireflies(const Fireflies& flies, AnalyticOptions options) 
                              static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)));
         const bool certain = frame.index == flies.first && x == 21 && y == 19;
         if (!certain && static_cast<double>(drawn) >= flies.rate * frame.spp) continue;
-        for (auto& plane : frame.indirect) plane(x, y) += flies.size / spp;
+        for (auto& plane : frame.lights[0].radiance) plane(x, y) += flies.size / spp;
       }
     }
   };
@@ -75,7 +77,7 @@ StressFinding check_trail(Lab& lab) {
   return worst_of(lab, 6.0);
 }
 
-double mean_of(const Planes<3>& planes, const Tile& tile) {
+double mean_of(const Planes<3>& planes, const Rect& tile) {
   double sum = 0.0;
   for (const auto& plane : planes) {
     for (int y = tile.y0; y < tile.y1; ++y) {
@@ -88,7 +90,7 @@ double mean_of(const Planes<3>& planes, const Tile& tile) {
 // Fireflies for ever: what is shown lies between the light without them and the light with them.
 StressFinding check_energy(Lab& lab) {
   const AnalyticOptions options{.extent = kExtent, .frames = 24};
-  const Tile all{0, 0, kExtent.width, kExtent.height};
+  const Rect all{0, 0, kExtent.width, kExtent.height};
   for (const float size : kSizes) {
     for (const double rate : kRates) {
       const Fireflies flies{size, rate, 0, options.frames};

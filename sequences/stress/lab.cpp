@@ -1,9 +1,12 @@
 #include "sequences/stress/lab.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "sequences/files/checkpoint.h"
 #include "sequences/files/exr_io.h"
+#include "temporal/methods.h"
 
 namespace eigenlight {
 
@@ -60,7 +63,7 @@ void StressRun::write(std::string_view name) const {
     }
   };
   add("", *picture_, 0);
-  add("noisy.", frame().indirect, 0);
+  add("noisy.", frame().lights[0].radiance, 0);
   add("N.", frame().surface.normal, 3);
   add("motion.", frame().motion, 3);
   channels.push_back({"Z", ExrType::kFloat, &frame().surface.depth});

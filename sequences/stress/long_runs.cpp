@@ -1,4 +1,6 @@
 // Runs that do not end: no drift, no growth, no loss of what the algebra needs.
+#include <fmt/format.h>
+
 #include <cmath>
 #include <numbers>
 

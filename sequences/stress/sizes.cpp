@@ -1,4 +1,6 @@
 // Images of every size that is allowed.
+#include <fmt/format.h>
+
 #include <array>
 
 #include "sequences/stress/measures.h"

@@ -1,4 +1,6 @@
 // Bad values in every field of a frame: they must stay alone, be counted, and be forgotten.
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
 #include <limits>
@@ -45,7 +47,7 @@ enum class Field { kSignal, kAlbedo, kNormal, kDepth, kMotion };
 Plane<float>& plane_of(Frame& frame, Field field) {
   switch (field) {
     case Field::kSignal:
-      return frame.indirect[1];
+      return frame.lights[0].radiance[1];
     case Field::kAlbedo:
       return frame.surface.albedo[1];
     case Field::kNormal:

@@ -15,6 +15,6 @@ struct AtrousFilterPass {
   TapLight& next;         ///< c_(i+1)
 };
 
-void atrous_filter_tile(const AtrousFilterPass& pass, const Tile& tile);
+void atrous_filter_tile(const AtrousFilterPass& pass, const Rect& tile);
 
 }  // namespace eigenlight

@@ -89,7 +89,7 @@ void StoreMeans(const AtrousFilterPass& pass, const Sums& sums, int x, int y) {
              pass.planes.row(pass.next.weight, y) + x);
 }
 
-void FilterTile(const AtrousFilterPass& pass, const Tile& tile) {
+void FilterTile(const AtrousFilterPass& pass, const Rect& tile) {
   const F d;
   const int lanes = static_cast<int>(hn::Lanes(d)), height = pass.planes.extent().height;
   for (int y = tile.y0; y < tile.y1; ++y) {
@@ -118,7 +118,7 @@ namespace eigenlight {
 
 HWY_EXPORT(FilterTile);
 
-void atrous_filter_tile(const AtrousFilterPass& pass, const Tile& tile) {
+void atrous_filter_tile(const AtrousFilterPass& pass, const Rect& tile) {
   const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(FilterTile)(pass, tile);
 }

@@ -25,7 +25,7 @@ void CrossBilateral::process(const SpatialInputs& in, Planes<3>& out) {
   check_spatial(in, out, grid_.extent(), "cross bilateral filter");
   planes_.load(in);
   for_each_tile(grid_,
-                [&](const Tile& tile) { cross_bilateral_tile(planes_, options_, tile, out); });
+                [&](const Rect& tile) { cross_bilateral_tile(planes_, options_, tile, out); });
 }
 
 }  // namespace eigenlight

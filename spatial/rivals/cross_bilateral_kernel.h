@@ -6,6 +6,6 @@
 namespace eigenlight {
 
 void cross_bilateral_tile(const TapPlanes& planes, const CrossBilateralOptions& options,
-                          const Tile& tile, Planes<3>& out);
+                          const Rect& tile, Planes<3>& out);
 
 }  // namespace eigenlight

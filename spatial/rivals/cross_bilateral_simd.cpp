@@ -104,7 +104,7 @@ void StoreMeans(const TapPlanes& planes, const Sums& sums, int x, int y, Planes<
   }
 }
 
-void BilateralTile(const TapPlanes& planes, const CrossBilateralOptions& options, const Tile& tile,
+void BilateralTile(const TapPlanes& planes, const CrossBilateralOptions& options, const Rect& tile,
                    Planes<3>& out) {
   const F d;
   const int lanes = static_cast<int>(hn::Lanes(d)), r = options.radius;
@@ -138,7 +138,7 @@ namespace eigenlight {
 HWY_EXPORT(BilateralTile);
 
 void cross_bilateral_tile(const TapPlanes& planes, const CrossBilateralOptions& options,
-                          const Tile& tile, Planes<3>& out) {
+                          const Rect& tile, Planes<3>& out) {
   const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(BilateralTile)(planes, options, tile, out);
 }

@@ -20,7 +20,7 @@ std::vector<PyramidLevel> make_pyramid_levels(Extent extent, int attributes, int
   return levels;
 }
 
-void load_pyramid_values(const Planes<3>& signal, const Plane<float>& weight, const Tile& tile,
+void load_pyramid_values(const Planes<3>& signal, const Plane<float>& weight, const Rect& tile,
                          Plane<float>& values) {
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0; x < tile.x1; ++x) {
@@ -34,7 +34,7 @@ void load_pyramid_values(const Planes<3>& signal, const Plane<float>& weight, co
   }
 }
 
-void store_pyramid_result(const Plane<float>& result, const Tile& tile, Planes<3>& out) {
+void store_pyramid_result(const Plane<float>& result, const Rect& tile, Planes<3>& out) {
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0; x < tile.x1; ++x) {
       const float* value = result.at(x, y);

@@ -28,11 +28,11 @@ struct PyramidEnergies {
 
 /// Writes signal times weight and weight to `values`; all 0 where the weight is not positive, or
 /// where one of them is not a number below 1e36.
-void load_pyramid_values(const Planes<3>& signal, const Plane<float>& weight, const Tile& tile,
+void load_pyramid_values(const Planes<3>& signal, const Plane<float>& weight, const Rect& tile,
                          Plane<float>& values);
 
 /// Writes I_up / w to `out`, 0 where w is 0.
-void store_pyramid_result(const Plane<float>& result, const Tile& tile, Planes<3>& out);
+void store_pyramid_result(const Plane<float>& result, const Rect& tile, Planes<3>& out);
 
 /// The weighted sum of Eq. 2 at pixel (x, y) of level `level`, from the energies of its samples,
 /// written to the level's result.
@@ -82,7 +82,7 @@ class Pyramid {
     check(in, out);
     const TileGrid grid = stage_tiles(in.weight.extent());
     levels_[0].attributes.copy_from(in.attributes);
-    for_each_tile(grid, [&](const Tile& tile) {
+    for_each_tile(grid, [&](const Rect& tile) {
       load_pyramid_values(in.signal, in.weight, tile, levels_[0].values);
       for_pixels(tile, [&](int x, int y) {
         if (edge_.exists(in.attributes.at(x, y))) return;
@@ -97,12 +97,12 @@ class Pyramid {
     level(passes).result.copy_from(level(passes).values);
     for (int l = passes; l-- > 0;) upsample(l);
     for_each_tile(grid,
-                  [&](const Tile& tile) { store_pyramid_result(level(0).result, tile, out); });
+                  [&](const Rect& tile) { store_pyramid_result(level(0).result, tile, out); });
   }
 
  private:
   template <typename Body>
-  static void for_pixels(const Tile& tile, const Body& body) {
+  static void for_pixels(const Rect& tile, const Body& body) {
     for (int y = tile.y0; y < tile.y1; ++y) {
       for (int x = tile.x0; x < tile.x1; ++x) body(x, y);
     }
@@ -123,7 +123,7 @@ class Pyramid {
   [[nodiscard]] float largest_radius() {
     float largest = 0.0f;
     const Plane<float>& attributes = level(0).attributes;
-    for_pixels({0, 0, attributes.width(), attributes.height(), 0}, [&](int x, int y) {
+    for_pixels({0, 0, attributes.width(), attributes.height()}, [&](int x, int y) {
       if (edge_.exists(attributes.at(x, y))) {
         largest = std::max(largest, edge_.radius(attributes.at(x, y)));
       }
@@ -134,7 +134,7 @@ class Pyramid {
   void upsample(int l) {
     PyramidLevel& fine = level(l);
     const int area = 1 << (2 * l);
-    for_each_tile(stage_tiles(fine.values.extent()), [&](const Tile& tile) {
+    for_each_tile(stage_tiles(fine.values.extent()), [&](const Rect& tile) {
       float radius = -1.0f;
       PyramidPass pass;
       for_pixels(tile, [&](int x, int y) {

@@ -31,6 +31,6 @@ void load_pyramid_block(const PyramidView& level, int x0, int y0, int border,
                         PyramidFineBlock& block);
 
 /// Attributes and I_up of the level above `tile`.
-void load_coarser_block(const PyramidPlanes& level, const Tile& tile, PyramidCoarseBlock& block);
+void load_coarser_block(const PyramidPlanes& level, const Rect& tile, PyramidCoarseBlock& block);
 
 }  // namespace eigenlight

@@ -38,16 +38,16 @@ void PyramidFilter::process(const SpatialInputs& in, Planes<3>& out) {
   };
   for (std::size_t l = 0; l < levels_.size(); ++l) {
     for_each_tile(down_tiles(levels_[l].depth.extent()),
-                  [&](const Tile& tile) { pyramid_down_tile(view(l), edge_, tile, levels_[l]); });
+                  [&](const Rect& tile) { pyramid_down_tile(view(l), edge_, tile, levels_[l]); });
   }
   copy_planes(levels_.back().values, levels_.back().result);
   for (std::size_t l = levels_.size(); l-- > 1;) {
     const PyramidUpPass up{view(l), levels_[l], edge_, weights_[l]};
     for_each_tile(up_tiles(view(l).extent()),
-                  [&](const Tile& tile) { pyramid_up_tile(up, tile, levels_[l - 1].result); });
+                  [&](const Rect& tile) { pyramid_up_tile(up, tile, levels_[l - 1].result); });
   }
   const PyramidUpPass last{view(0), levels_[0], edge_, weights_[0]};
-  for_each_tile(up_tiles(extent_), [&](const Tile& tile) { pyramid_last_tile(last, tile, out); });
+  for_each_tile(up_tiles(extent_), [&](const Rect& tile) { pyramid_last_tile(last, tile, out); });
 }
 
 }  // namespace eigenlight

@@ -87,7 +87,7 @@ void downsample_pyramid(const Edge& edge, const PyramidLevel& fine, float pixel_
       attributes[a] = Edge::kKeepsMajor ? major[a] : attributes[a] / total;
     }
   };
-  for_each_tile(stage_tiles(coarse.values.extent()), [&](const Tile& tile) {
+  for_each_tile(stage_tiles(coarse.values.extent()), [&](const Rect& tile) {
     for (int y = tile.y0; y < tile.y1; ++y) {
       for (int x = tile.x0; x < tile.x1; ++x) pixel(x, y);
     }

@@ -48,7 +48,7 @@ struct PyramidView {
 
 /// Fills a tile of `coarse` from the level below it.
 void pyramid_down_tile(const PyramidView& fine, const GlobalIlluminationEdge& edge,
-                       const Tile& tile, PyramidPlanes& coarse);
+                       const Rect& tile, PyramidPlanes& coarse);
 
 struct PyramidUpPass {
   PyramidView fine;
@@ -58,7 +58,7 @@ struct PyramidUpPass {
 };
 
 /// Writes a tile of I_up to `result` (a level's), or, of the image, I_up over its weight to `out`.
-void pyramid_up_tile(const PyramidUpPass& up, const Tile& tile, Planes<4>& result);
-void pyramid_last_tile(const PyramidUpPass& up, const Tile& tile, Planes<3>& out);
+void pyramid_up_tile(const PyramidUpPass& up, const Rect& tile, Planes<4>& result);
+void pyramid_last_tile(const PyramidUpPass& up, const Rect& tile, Planes<3>& out);
 
 }  // namespace eigenlight

@@ -124,7 +124,7 @@ void SpreadRow(const float* from, int count, float* to) {
   for (; i < count; ++i) to[2 * i] = to[2 * i + 1] = from[i];
 }
 
-void LoadCoarse(const PyramidPlanes& planes, const Tile& tile, PyramidCoarseBlock& block) {
+void LoadCoarse(const PyramidPlanes& planes, const Rect& tile, PyramidCoarseBlock& block) {
   const int x0 = tile.x0 / 2 - 1, y0 = tile.y0 / 2 - 1;
   const Extent extent = planes.depth.extent();
   const int end = tile.x0 / 2 + kPyramidTileWidth / 2 + 1;
@@ -160,7 +160,7 @@ void load_pyramid_block(const PyramidView& level, int x0, int y0, int border,
   HWY_DYNAMIC_DISPATCH(LoadBlock)(level, x0, y0, border, block);
 }
 
-void load_coarser_block(const PyramidPlanes& level, const Tile& tile, PyramidCoarseBlock& block) {
+void load_coarser_block(const PyramidPlanes& level, const Rect& tile, PyramidCoarseBlock& block) {
   const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(LoadCoarse)(level, tile, block);
 }

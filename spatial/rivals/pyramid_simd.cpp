@@ -122,7 +122,7 @@ Quad FindMajor(const GlobalIlluminationEdge& edge, const Quad (&quad)[4], VF& wh
 }
 
 // Eq. 3.
-void DownTile(const PyramidView& fine, const GlobalIlluminationEdge& edge, const Tile& tile,
+void DownTile(const PyramidView& fine, const GlobalIlluminationEdge& edge, const Rect& tile,
               PyramidPlanes& coarse) {
   const F d;
   const int lanes = static_cast<int>(hn::Lanes(d));
@@ -262,7 +262,7 @@ HWY_INLINE void Blend(const PyramidUpPass& up, const PyramidFineBlock& fine,
 }
 
 template <bool kCompensates, typename Store>
-void ForEachBlend(const PyramidUpPass& up, const Tile& tile, const Store& store) {
+void ForEachBlend(const PyramidUpPass& up, const Rect& tile, const Store& store) {
   const int lanes = static_cast<int>(hn::Lanes(F()));
   PyramidFineBlock fine;
   PyramidCoarseBlock coarse;
@@ -279,7 +279,7 @@ void ForEachBlend(const PyramidUpPass& up, const Tile& tile, const Store& store)
 }
 
 template <typename Store>
-void ForEachBlend(const PyramidUpPass& up, const Tile& tile, const Store& store) {
+void ForEachBlend(const PyramidUpPass& up, const Rect& tile, const Store& store) {
   if (up.pass.gamma > 0.0f) {
     ForEachBlend<true>(up, tile, store);
   } else {
@@ -287,7 +287,7 @@ void ForEachBlend(const PyramidUpPass& up, const Tile& tile, const Store& store)
   }
 }
 
-void UpTile(const PyramidUpPass& up, const Tile& tile, Planes<4>& result) {
+void UpTile(const PyramidUpPass& up, const Rect& tile, Planes<4>& result) {
   const F d;
   ForEachBlend(up, tile, [&](const auto& sums, int x, int y) {
     for (std::size_t c = 0; c < 4; ++c) {
@@ -296,7 +296,7 @@ void UpTile(const PyramidUpPass& up, const Tile& tile, Planes<4>& result) {
   });
 }
 
-void LastTile(const PyramidUpPass& up, const Tile& tile, Planes<3>& out) {
+void LastTile(const PyramidUpPass& up, const Rect& tile, Planes<3>& out) {
   const F d;
   ForEachBlend(up, tile, [&](const auto& sums, int x, int y) {
     const MF reached = hn::Gt(sums.result[kWeight], hn::Zero(d));
@@ -319,17 +319,17 @@ HWY_EXPORT(UpTile);
 HWY_EXPORT(LastTile);
 
 void pyramid_down_tile(const PyramidView& fine, const GlobalIlluminationEdge& edge,
-                       const Tile& tile, PyramidPlanes& coarse) {
+                       const Rect& tile, PyramidPlanes& coarse) {
   const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(DownTile)(fine, edge, tile, coarse);
 }
 
-void pyramid_up_tile(const PyramidUpPass& up, const Tile& tile, Planes<4>& result) {
+void pyramid_up_tile(const PyramidUpPass& up, const Rect& tile, Planes<4>& result) {
   const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(UpTile)(up, tile, result);
 }
 
-void pyramid_last_tile(const PyramidUpPass& up, const Tile& tile, Planes<3>& out) {
+void pyramid_last_tile(const PyramidUpPass& up, const Rect& tile, Planes<3>& out) {
   const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(LastTile)(up, tile, out);
 }

@@ -1,5 +1,7 @@
 #include "spatial/rivals/pyramid_weights.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>

@@ -6,7 +6,7 @@
 namespace eigenlight {
 
 struct SpatialInputs {
-  const Frame& guides;         ///< normals, depth, albedo, position, id and camera are read
+  const FrameInput& guides;    ///< normals, depth, albedo, position, id and camera are read
   const Planes<3>& signal;     ///< indirect radiance over albedo, linear; finite where weight > 0
   const Plane<float>& weight;  ///< >= 0; 0: the pixel's signal is not to be used
 };

@@ -51,7 +51,7 @@ TapLight TapPlanes::make_light() const {
 }
 
 void TapPlanes::load(const SpatialInputs& in) {
-  for_each_tile(grid_, [&](const Tile& tile) {
+  for_each_tile(grid_, [&](const Rect& tile) {
     for (int y = tile.y0; y < tile.y1; ++y) {
       for (int x = tile.x0; x < tile.x1; ++x) load_pixel(in, x, y);
     }

@@ -41,7 +41,7 @@ void filter_pixel(const Edge& edge, const PyramidInputs& in, Extent span, int x,
 
 template <typename Edge>
 void filter_image(const Edge& edge, const PyramidInputs& in, Extent span, Planes<3>& out) {
-  for_each_tile(stage_tiles(in.weight.extent()), [&](const Tile& tile) {
+  for_each_tile(stage_tiles(in.weight.extent()), [&](const Rect& tile) {
     for (int y = tile.y0; y < tile.y1; ++y) {
       for (int x = tile.x0; x < tile.x1; ++x) filter_pixel(edge, in, span, x, y, out);
     }

@@ -29,7 +29,7 @@ class PyramidExample {
     const int passes = pyramid_passes(edge.blur_radius);
     std::vector<PyramidLevel> levels = make_pyramid_levels(extent, Edge::kAttributes, passes);
     levels[0].attributes.copy_from(in.attributes);
-    load_pyramid_values(in.signal, in.weight, {0, 0, extent.width, extent.height, 0},
+    load_pyramid_values(in.signal, in.weight, {0, 0, extent.width, extent.height},
                         levels[0].values);
     float area = 1.0f;
     for (std::size_t l = 0; l + 1 < levels.size(); ++l, area *= 4.0f) {

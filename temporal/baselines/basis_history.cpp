@@ -1,5 +1,7 @@
 #include "temporal/baselines/basis_history.h"
 
+#include <fmt/format.h>
+
 #include <bitset>
 #include <cmath>
 #include <utility>
@@ -37,7 +39,7 @@ void drop_empty_taps(const BasisField& from, int count, TapSegment& taps) {
 BasisHistory::BasisHistory(Extent extent, int bases, const HistoryOptions& options)
     : options_(options), surfaces_(extent), bases_(extent, bases), warped_(extent, bases) {}
 
-BasisHistory::Warp BasisHistory::warp(const Frame& frame) {
+BasisHistory::Warp BasisHistory::warp(const FrameInput& frame) {
   EL_CHECK(frame.extent() == extent(), "frame {} is {}x{}, expected {}x{}", frame.index,
            frame.extent().width, frame.extent().height, extent().width, extent().height);
   if (!surfaces_.is_followed_by(frame)) {
@@ -48,14 +50,15 @@ BasisHistory::Warp BasisHistory::warp(const Frame& frame) {
   const PreviousSurface previous = surfaces_.previous();
   for_each_tile(stage_tiles(extent()), [&](const Tile& tile) {
     for (int y = tile.y0; y < tile.y1; ++y) {
-      warp_row(frame, previous, {tile.x0, y, tile.x1, y + 1, tile.index});
+      warp_row(frame, previous, {tile.x0, y, tile.x1, y + 1});
     }
   });
   std::swap(bases_, warped_);
   return {};
 }
 
-void BasisHistory::warp_row(const Frame& frame, const PreviousSurface& previous, const Tile& row) {
+void BasisHistory::warp_row(const FrameInput& frame, const PreviousSurface& previous,
+                            const Rect& row) {
   TapSegment taps;
   compute_taps(frame, previous, taps_, row, taps);
   const int count = row.x1 - row.x0;
@@ -71,7 +74,8 @@ void BasisHistory::warp_row(const Frame& frame, const PreviousSurface& previous,
   }
 }
 
-void BasisHistory::widen(const Frame& frame, const PreviousSurface& previous, glm::ivec2 pixel) {
+void BasisHistory::widen(const FrameInput& frame, const PreviousSurface& previous,
+                         glm::ivec2 pixel) {
   const auto& normal = frame.surface.normal;
   const auto [x, y] = std::pair(pixel.x, pixel.y);
   const SoughtPoint point{

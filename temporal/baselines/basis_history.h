@@ -32,9 +32,9 @@ class BasisHistory {
   /// Carries bases and ages over to `frame` through validated taps. All become 0 at a cut, which is
   /// a frame that does not follow the one kept last. Throws std::invalid_argument if its size
   /// differs.
-  [[nodiscard]] Warp warp(const Frame& frame);
+  [[nodiscard]] Warp warp(const FrameInput& frame);
   /// Takes what the next warp() has to know of `frame`. The bases are to be updated by then.
-  void keep(const Frame& frame) { surfaces_.keep(frame); }
+  void keep(const FrameInput& frame) { surfaces_.keep(frame); }
   void reset() { surfaces_.reset(); }  ///< the next warp() is a cut
 
   [[nodiscard]] Extent extent() const { return bases_.extent(); }
@@ -46,8 +46,8 @@ class BasisHistory {
   void load(StateReader& in);
 
  private:
-  void warp_row(const Frame& frame, const PreviousSurface& previous, const Tile& row);
-  void widen(const Frame& frame, const PreviousSurface& previous, glm::ivec2 pixel);
+  void warp_row(const FrameInput& frame, const PreviousSurface& previous, const Rect& row);
+  void widen(const FrameInput& frame, const PreviousSurface& previous, glm::ivec2 pixel);
 
   HistoryOptions options_;
   TapOptions taps_;

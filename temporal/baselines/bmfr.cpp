@@ -40,7 +40,7 @@ void Bmfr::blend_tile(const Tile& tile) {
     const float share = usable ? std::max(options_.alpha, 1.0f / (frames + 1.0f)) : 0.0f;
     for (std::size_t c = 0; c < 3; ++c) {
       float& kept = field.value(x, y, static_cast<int>(c), 0);
-      if (usable) kept += (frame().indirect[c](x, y) - kept) * share;
+      if (usable) kept += (frame().lights[0].radiance[c](x, y) - kept) * share;
       light_[c](x, y) = kept;
     }
     if (usable) frames = std::min(frames + 1.0f, kMostFrames);

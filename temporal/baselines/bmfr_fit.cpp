@@ -34,7 +34,7 @@ constexpr std::array<glm::ivec2, 16> kOffsets{{{-14, -14},
 
 using Features = Eigen::Matrix<float, kFeatures, 1>;
 
-Features features_at(const Frame& guides, int x, int y) {
+Features features_at(const FrameInput& guides, int x, int y) {
   const auto& n = guides.surface.normal;
   const glm::vec3 view =
       guides.camera.pixel_to_view(glm::vec2(x, y) + 0.5f) * guides.surface.depth(x, y);

@@ -8,7 +8,7 @@
 namespace eigenlight {
 
 struct BmfrFitInputs {
-  const Frame& guides;         ///< normals, depth, id and camera are read
+  const FrameInput& guides;    ///< normals, depth, id and camera are read
   const Planes<3>& light;      ///< finite where `usable` > 0
   const Plane<float>& usable;  ///< 0: the pixel takes no part in any fit
   int jitter = 0;              ///< >= 0, which of the 16 block offsets

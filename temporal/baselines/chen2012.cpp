@@ -64,7 +64,7 @@ void Chen2012::resample(FrameSource& source) {
   for_each_tile(tiles, [&](const Tile& tile) { find_new_pixels(tile); });
   for (const Counts& counts : counts_) report_.new_pixels += counts.fresh;
   const bool wanted = !report_.cut && report_.new_pixels > 0;
-  const bool resampled = wanted && source.resample(extra_, frame_, extra_mean_);
+  const bool resampled = wanted && eigenlight::resample(source, extra_, frame_, extra_mean_);
   if (resampled) report_.extra_samples = kExtraSamples * report_.new_pixels;
   for_each_tile(tiles, [&](const Tile& tile) { merge_samples(tile, resampled); });
   for (const Counts& counts : counts_) {
@@ -99,7 +99,7 @@ void Chen2012::merge_samples(const Tile& tile, bool resampled) {
       float sum = 0.0f;
       for (std::size_t c = 0; c < 3; ++c) {
         float& u = light_[c](x, y);
-        u = frame_.indirect[c](x, y);
+        u = frame_.lights[0].radiance[c](x, y);
         if (extra > 0.0f) u = (regular * u + extra * extra_mean_[c](x, y)) / (regular + extra);
         sum += std::abs(u);
       }

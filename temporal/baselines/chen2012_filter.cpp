@@ -15,19 +15,19 @@ constexpr float kPlaneDistance = 0.02f;
 
 using Values = std::array<float, 3 * kMaxBases>;
 
-glm::vec3 normal_at(const Frame& frame, glm::ivec2 p) {
+glm::vec3 normal_at(const FrameInput& frame, glm::ivec2 p) {
   const auto& n = frame.surface.normal;
   return {n[0](p.x, p.y), n[1](p.x, p.y), n[2](p.x, p.y)};
 }
 
-glm::vec3 point_at(const Frame& frame, glm::ivec2 p) {
+glm::vec3 point_at(const FrameInput& frame, glm::ivec2 p) {
   return frame.camera.pixel_to_view(glm::vec2(p) + 0.5f) * frame.surface.depth(p.x, p.y);
 }
 
 // What the pixel in the middle compares its neighbors with.
 class Center {
  public:
-  Center(const Frame& frame, glm::ivec2 pixel)
+  Center(const FrameInput& frame, glm::ivec2 pixel)
       : frame_(frame),
         pixel_(pixel),
         normal_(normal_at(frame, pixel)),
@@ -44,7 +44,7 @@ class Center {
   }
 
  private:
-  const Frame& frame_;
+  const FrameInput& frame_;
   glm::ivec2 pixel_;
   glm::vec3 normal_, point_;
   glm::vec3 across_;  // its product with a distance is that off the plane, in units of the bound
@@ -59,7 +59,7 @@ Values values_at(const BasisField& bases, int x, int y) {
   return values;
 }
 
-Values filter_pixel(const Frame& frame, const BasisField& bases, glm::ivec2 p) {
+Values filter_pixel(const FrameInput& frame, const BasisField& bases, glm::ivec2 p) {
   const auto count = static_cast<std::size_t>(3 * bases.bases());
   const Values own = values_at(bases, p.x, p.y);
   if (!is_usable_surface(frame.surface, p.x, p.y)) return own;
@@ -88,7 +88,7 @@ Values filter_pixel(const Frame& frame, const BasisField& bases, glm::ivec2 p) {
 NewPixelFilter::NewPixelFilter(Extent extent)
     : tiles_(stage_tiles(extent)), filtered_(static_cast<std::size_t>(tiles_.count())) {}
 
-void NewPixelFilter::process(const Frame& frame, const Plane<std::uint8_t>& smooth,
+void NewPixelFilter::process(const FrameInput& frame, const Plane<std::uint8_t>& smooth,
                              BasisField& bases) {
   EL_CHECK(frame.extent() == tiles_.extent() && smooth.extent() == tiles_.extent() &&
                bases.extent() == tiles_.extent(),

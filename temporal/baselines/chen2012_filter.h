@@ -23,7 +23,7 @@ class NewPixelFilter {
   explicit NewPixelFilter(Extent extent);
 
   /// Filters where `smooth` is not 0, which takes a surface. Ages are not changed.
-  void process(const Frame& frame, const Plane<std::uint8_t>& smooth, BasisField& bases);
+  void process(const FrameInput& frame, const Plane<std::uint8_t>& smooth, BasisField& bases);
 
  private:
   TileGrid tiles_;

@@ -54,7 +54,7 @@ void FrameByFrame::take_signal() {
       for (int x = tile.x0; x < tile.x1; ++x) {
         const bool used = count.take(frame_, x, y);
         for (std::size_t c = 0; c < 3; ++c) {
-          signal_[c](x, y) = used ? frame_.indirect[c](x, y) : 0.0f;
+          signal_[c](x, y) = used ? frame_.lights[0].radiance[c](x, y) : 0.0f;
         }
         weight_(x, y) = used ? 1.0f : 0.0f;
         age_(x, y) = frame_.surface.id(x, y) != 0 ? 1.0f : 0.0f;

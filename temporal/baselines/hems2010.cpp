@@ -1,5 +1,7 @@
 #include "temporal/baselines/hems2010.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -81,7 +83,7 @@ const Planes<3>* Hems2010::step(FrameSource& source) {
 
 // u, where it may be used.
 void Hems2010::take_light(const Tile& tile, SampleCounts& counts) {
-  const auto& u = frame_.indirect;
+  const auto& u = frame_.lights[0].radiance;
   counts = {};
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0; x < tile.x1; ++x) {

@@ -1,5 +1,7 @@
 #include "temporal/baselines/meyer2006.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "temporal/samples/sample_counts.h"

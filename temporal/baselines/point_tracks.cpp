@@ -26,7 +26,7 @@ bool is_finite(const glm::vec3& v) {
 }
 
 // Reads what the frame shows at a point's taps and moves the point to the frame before.
-TrackSample read_and_move(const Frame& frame, const PointTaps& taps, LivePoint& live) {
+TrackSample read_and_move(const FrameInput& frame, const PointTaps& taps, LivePoint& live) {
   TrackSample sample{live.track, taps.corner, taps.weight, glm::vec3(0.0f), false};
   glm::vec2 motion(0.0f);
   float share = 0.0f, strongest = 0.0f, depth = 0.0f;
@@ -34,7 +34,7 @@ TrackSample read_and_move(const Frame& frame, const PointTaps& taps, LivePoint& 
     const float weight = taps.weight[t];
     if (!(weight > 0.0f)) continue;
     const glm::ivec2 q = taps.tap(t);
-    const glm::vec3 light = at(frame.indirect, q);
+    const glm::vec3 light = at(frame.lights[0].radiance, q);
     if (is_finite(light)) {
       sample.light += weight * light;
       share += weight;
@@ -55,7 +55,7 @@ TrackSample read_and_move(const Frame& frame, const PointTaps& taps, LivePoint& 
 // One frame's points: those that come from the frame after it, and its own.
 class FramePoints {
  public:
-  FramePoints(const Frame& frame, const TapOptions& options, std::vector<LivePoint>& live)
+  FramePoints(const FrameInput& frame, const TapOptions& options, std::vector<LivePoint>& live)
       : frame_(frame), options_(options), live_(live), coverage_(frame.extent()) {}
 
   std::vector<TrackSample> find(std::uint32_t& count) {
@@ -110,7 +110,7 @@ class FramePoints {
     live_.push_back(live);
   }
 
-  const Frame& frame_;
+  const FrameInput& frame_;
   const TapOptions& options_;
   std::vector<LivePoint>& live_;
   Plane<float> coverage_;

@@ -23,7 +23,7 @@ void RunningMean::blend_tile(const Tile& tile) {
     for (std::size_t c = 0; c < 3; ++c) {
       float& sum = sums.value(x, y, static_cast<int>(c), 0);
       float mean = known > 0.0f ? sum / known : 0.0f;
-      if (usable) mean += (frame().indirect[c](x, y) - mean) / age;
+      if (usable) mean += (frame().lights[0].radiance[c](x, y) - mean) / age;
       sum = mean * age;
       output_[c](x, y) = mean;
     }

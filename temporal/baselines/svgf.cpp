@@ -35,7 +35,7 @@ Svgf::Svgf(const DenoiserOptions& options, const SvgfOptions& parts)
 
 void Svgf::blend_tile(const Tile& tile) {
   BasisField& field = bases();
-  const auto& u = frame().indirect;
+  const auto& u = frame().lights[0].radiance;
   for_each_sample(tile, [&](int x, int y, bool usable) {
     if (!usable) return;
     float& frames = field.age(x, y);

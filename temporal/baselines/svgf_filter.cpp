@@ -16,7 +16,7 @@ void SvgfWeights::validate() const {
            "luminance_sigmas {}: expected (0, 100]", luminance_sigmas);
 }
 
-float svgf_geometry_weight(const Frame& guides, const SvgfWeights& weights, glm::ivec2 p,
+float svgf_geometry_weight(const FrameInput& guides, const SvgfWeights& weights, glm::ivec2 p,
                            glm::ivec2 q) {
   const Camera& camera = guides.camera;
   const auto normal_at = [&](glm::ivec2 at) {

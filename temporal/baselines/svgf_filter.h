@@ -24,7 +24,7 @@ struct SvgfImage {
 };
 
 struct SvgfPass {
-  const Frame& guides;
+  const FrameInput& guides;
   const SvgfWeights& weights;
   int step;                   ///< pixels between taps, >= 1
   const Plane<float>& known;  ///< 1 where the image has a value, else 0
@@ -38,10 +38,10 @@ struct SvgfPass {
 /// grad z is that of the pixel's own plane. The paper leaves both e open: e_z = 1e-3 z_p keeps
 /// planes that face the camera whole, e_l = 1e-4 l_p is rounding. Pixels that are not known neither
 /// give nor take, and become 0. `in` and `out` must not be the same.
-void svgf_pass_tile(const SvgfPass& pass, const SvgfImage& in, const Tile& tile, SvgfImage& out);
+void svgf_pass_tile(const SvgfPass& pass, const SvgfImage& in, const Rect& tile, SvgfImage& out);
 
 /// w of the geometry alone, between pixels p and q that show surfaces.
-[[nodiscard]] float svgf_geometry_weight(const Frame& guides, const SvgfWeights& weights,
+[[nodiscard]] float svgf_geometry_weight(const FrameInput& guides, const SvgfWeights& weights,
                                          glm::ivec2 p, glm::ivec2 q);
 
 }  // namespace eigenlight

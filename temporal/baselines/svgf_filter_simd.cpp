@@ -167,7 +167,7 @@ void AddRow(const SvgfPass& pass, const TapRow& row, int x, int dy, Center& at) 
   }
 }
 
-void PassTile(const SvgfPass& pass, const SvgfImage& in, const Tile& tile, SvgfImage& out) {
+void PassTile(const SvgfPass& pass, const SvgfImage& in, const Rect& tile, SvgfImage& out) {
   const F d;
   const int lanes = static_cast<int>(hn::Lanes(d));
   alignas(HWY_MAX_BYTES) float smooth_variance[kWidth + HWY_MAX_BYTES / sizeof(float)] = {};
@@ -203,7 +203,7 @@ namespace eigenlight {
 
 HWY_EXPORT(PassTile);
 
-void svgf_pass_tile(const SvgfPass& pass, const SvgfImage& in, const Tile& tile, SvgfImage& out) {
+void svgf_pass_tile(const SvgfPass& pass, const SvgfImage& in, const Rect& tile, SvgfImage& out) {
   EL_DCHECK(tile.x1 - tile.x0 <= 64);
   const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(PassTile)(pass, in, tile, out);

@@ -64,7 +64,7 @@ void FillRow(float own, float left, float right, float* out) {
   }
 }
 
-void FillRows(const CoefficientField& field, const Tile& row, int count, CoefficientRows& out) {
+void FillRows(const CoefficientField& field, const Rect& row, int count, CoefficientRows& out) {
   const TileGrid& grid = field.grid();
   const float ty = (static_cast<float>(row.y0) + 0.5f) / kCoefficientTile - 0.5f;
   const int y0 = std::clamp(static_cast<int>(std::floor(ty)), 0, grid.rows() - 1);
@@ -91,7 +91,7 @@ namespace eigenlight {
 
 HWY_EXPORT(FillRows);
 
-void CoefficientField::rows(const Tile& row, int count, CoefficientRows& out) const {
+void CoefficientField::rows(const Rect& row, int count, CoefficientRows& out) const {
   EL_DCHECK(row.x0 % kCoefficientTile == 0 && row.x1 - row.x0 <= kCoefficientTile);
   EL_DCHECK(count >= 0 && count <= bases_);
   HWY_DYNAMIC_DISPATCH(FillRows)(*this, row, count, out);

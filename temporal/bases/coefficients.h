@@ -51,7 +51,7 @@ class CoefficientField {
   /// c_0 to c_(count - 1) (the steady 1 of k = 0 included) along row y0 of the tile column that
   /// starts at x0, bilinear between tile centers and constant beyond the outermost; count <=
   /// bases().
-  void rows(const Tile& row, int count, CoefficientRows& out) const;
+  void rows(const Rect& row, int count, CoefficientRows& out) const;
 
  private:
   TileGrid grid_;

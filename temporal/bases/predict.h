@@ -22,7 +22,7 @@ struct PredictOutputs {
 /// 2], over the end that it passes. Within it the running mean of variances follows by itself: a
 /// light that is one of several changes the noise in no known way (scaled by c_0^2 always, relMSE
 /// of `atrium --perturb lights` at 320x180 was 0.055 instead of 0.046).
-void predict_tile(const BasisField& bases, const CoefficientField& coefficients, const Tile& tile,
+void predict_tile(const BasisField& bases, const CoefficientField& coefficients, const Rect& tile,
                   const PredictOutputs& out);
 
 }  // namespace eigenlight

@@ -65,12 +65,12 @@ void PredictVector(const BasisField& bases, const CoefficientRows& coefficient, 
   hn::StoreU(FollowGain(hn::LoadU(d, variance), hn::Load(d, coefficient[0] + i)), d, variance);
 }
 
-void PredictTile(const BasisField& bases, const CoefficientField& coefficients, const Tile& tile,
+void PredictTile(const BasisField& bases, const CoefficientField& coefficients, const Rect& tile,
                  const PredictOutputs& out) {
   const int lanes = static_cast<int>(hn::Lanes(F())), rank = coefficients.used();
   CoefficientRows coefficient;
   for (int y = tile.y0; y < tile.y1; ++y) {
-    coefficients.rows({tile.x0, y, tile.x1, y + 1, tile.index}, rank, coefficient);
+    coefficients.rows({tile.x0, y, tile.x1, y + 1}, rank, coefficient);
     for (int i = 0; i < tile.x1 - tile.x0; i += lanes) {
       PredictVector(bases, coefficient, rank, tile.x0 + i, y, i, out);
     }
@@ -86,7 +86,7 @@ namespace eigenlight {
 
 HWY_EXPORT(PredictTile);
 
-void predict_tile(const BasisField& bases, const CoefficientField& coefficients, const Tile& tile,
+void predict_tile(const BasisField& bases, const CoefficientField& coefficients, const Rect& tile,
                   const PredictOutputs& out) {
   EL_DCHECK(tile.x1 - tile.x0 <= kCoefficientTile);
   const FloatTrapsOff lanes_behind_masks_may_hold_anything;

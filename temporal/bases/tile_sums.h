@@ -44,7 +44,7 @@ struct TileSums {
 /// What the sums are taken over.
 struct SumInputs {
   const BasisField& bases;       ///< warped, not yet updated (leave one out)
-  const Frame& frame;            ///< raw indirect light u
+  const FrameInput& frame;       ///< raw indirect light u
   const Plane<float>& variance;  ///< of one frame's luminance, from earlier frames only
   int active = kMaxBases;        ///< bases that may hold energy; sums of the others stay 0
 };
@@ -55,10 +55,10 @@ struct SumInputs {
 /// (the inverse of its expected squared innovation, n its age), and with 0 where it has no history
 /// or u is not finite or beyond kLargestLight. Where m luminance(r)^2 > kOutlier^2, m is divided by
 /// their ratio. Sums over kSumRows rows are in float, over those in double.
-void accumulate_tile(const SumInputs& in, const Tile& tile, TileSums& sums);
+void accumulate_tile(const SumInputs& in, const Rect& tile, TileSums& sums);
 
 /// A few fireflies are no gain, a light that changed is: where more than an eighth of the pixels of
 /// a whole tile are outliers, `sums` becomes that of full weights.
-void admit_outliers(const SumInputs& in, const Tile& tile, TileSums& sums);
+void admit_outliers(const SumInputs& in, const Rect& tile, TileSums& sums);
 
 }  // namespace eigenlight

@@ -55,8 +55,8 @@ Pixels LoadPixels(const SumInputs& in, const Block& block, int x, int y, bool is
   const VF largest = hn::Set(d, kLargestLight), one = hn::Set(d, 1.0f);
   Color u, v;
   for (std::size_t c = 0; c < 3; ++c) {
-    prefetch_below(in.frame.indirect[c], x, y);
-    u[c] = hn::LoadU(d, in.frame.indirect[c].row(y) + x);
+    prefetch_below(in.frame.lights[0].radiance[c], x, y);
+    u[c] = hn::LoadU(d, in.frame.lights[0].radiance[c].row(y) + x);
   }
   block.Load(0, v);
   const VF age = hn::Load(d, in.bases.ages(x, y)), luminance = Luminance(v);
@@ -127,7 +127,7 @@ void AddPixels(const Pixels& pixels, const Block& block, int active, LaneSums& s
   }
 }
 
-void AddRows(const SumInputs& in, const Tile& rows, bool is_bounded, TileSums& sums) {
+void AddRows(const SumInputs& in, const Rect& rows, bool is_bounded, TileSums& sums) {
   const int active = std::min(in.active, in.bases.bases());
   LaneSums lanes;
   ForEachSum(active, lanes, sums, [](VF& lane, double&) { lane = hn::Zero(F()); });
@@ -150,10 +150,9 @@ void AddRows(const SumInputs& in, const Tile& rows, bool is_bounded, TileSums& s
   });
 }
 
-void AddTile(const SumInputs& in, const Tile& tile, bool is_bounded, TileSums& sums) {
+void AddTile(const SumInputs& in, const Rect& tile, bool is_bounded, TileSums& sums) {
   for (int y = tile.y0; y < tile.y1; y += kSumRows) {
-    AddRows(in, {tile.x0, y, tile.x1, std::min(y + kSumRows, tile.y1), tile.index}, is_bounded,
-            sums);
+    AddRows(in, {tile.x0, y, tile.x1, std::min(y + kSumRows, tile.y1)}, is_bounded, sums);
   }
 }
 
@@ -166,13 +165,13 @@ namespace eigenlight {
 
 HWY_EXPORT(AddTile);
 
-void accumulate_tile(const SumInputs& in, const Tile& tile, TileSums& sums) {
+void accumulate_tile(const SumInputs& in, const Rect& tile, TileSums& sums) {
   EL_DCHECK(tile.x1 - tile.x0 <= kSegment);
   const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(AddTile)(in, tile, true, sums);
 }
 
-void admit_outliers(const SumInputs& in, const Tile& tile, TileSums& sums) {
+void admit_outliers(const SumInputs& in, const Rect& tile, TileSums& sums) {
   if (8.0 * sums.outliers <= sums.pixels) return;
   const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   sums = {};

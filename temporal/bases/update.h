@@ -31,6 +31,6 @@ struct UpdateOutputs {
 /// that is the running mean. A newborn basis starts as the correction instead, with c_k = 1. A new
 /// pixel has n = 0 and starts at the V of least energy that explains u. Pixels without usable
 /// samples keep what they have; those without history either stay 0.
-void update_tile(const UpdateInputs& in, const Tile& tile, const UpdateOutputs& out);
+void update_tile(const UpdateInputs& in, const Rect& tile, const UpdateOutputs& out);
 
 }  // namespace eigenlight

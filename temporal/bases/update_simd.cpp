@@ -107,12 +107,12 @@ void UpdateVector(const UpdateInputs& in, const Place& at, const Row& row,
   hn::Store(step.age, F(), out.bases.ages(at.x, at.y));
 }
 
-void UpdateTile(const UpdateInputs& in, const Tile& tile, const UpdateOutputs& out) {
+void UpdateTile(const UpdateInputs& in, const Rect& tile, const UpdateOutputs& out) {
   const F d;
   const int lanes = static_cast<int>(hn::Lanes(d));
   Row row;
   for (int y = tile.y0; y < tile.y1; ++y) {
-    const Tile segment{tile.x0, y, tile.x1, y + 1, tile.index};
+    const Rect segment{tile.x0, y, tile.x1, y + 1};
     in.coefficients.rows(segment, in.active, row.coefficient);
     in.learning.rows(segment, in.active, row.learning);
     for (int x = tile.x0; x < tile.x1; x += lanes) {
@@ -131,7 +131,7 @@ namespace eigenlight {
 
 HWY_EXPORT(UpdateTile);
 
-void update_tile(const UpdateInputs& in, const Tile& tile, const UpdateOutputs& out) {
+void update_tile(const UpdateInputs& in, const Rect& tile, const UpdateOutputs& out) {
   EL_DCHECK(tile.x1 - tile.x0 <= kCoefficientTile);
   EL_DCHECK(in.active <= out.bases.bases() && in.newborn < out.bases.bases());
   const FloatTrapsOff lanes_behind_masks_may_hold_anything;

@@ -49,13 +49,13 @@ Correction::Correction(Extent extent, const CorrectionOptions& options)
   options.validate();
 }
 
-void Correction::place(const GBuffer& surface, const Tile& area) {
+void Correction::place(const GBuffer& surface, const Rect& area) {
   for_needed_cells(area, [&](const Tile& cells) { place_cells(surface, cells, cells_); });
 }
 
-void Correction::count(const CorrectionInputs& in, const Tile& area) {
+void Correction::count(const CorrectionInputs& in, const Rect& area) {
   for (int y = area.y0; y < area.y1; y += kResidualBlock) {
-    const Tile row{area.x0, y, area.x1, std::min(y + kResidualBlock, area.y1), 0};
+    const Rect row{area.x0, y, area.x1, std::min(y + kResidualBlock, area.y1)};
     const int first = y / kResidualBlock * block_grid_.columns() + area.x0 / kResidualBlock;
     const int blocks = (area.x1 - area.x0 + kResidualBlock - 1) / kResidualBlock;
     test_blocks(in, row,
@@ -67,7 +67,7 @@ void Correction::count(const CorrectionInputs& in, const Tile& area) {
 
 // Calls body(cells) for those of the area that the last frame needed, tile by tile.
 template <typename Body>
-void Correction::for_needed_cells(const Tile& area, const Body& body) const {
+void Correction::for_needed_cells(const Rect& area, const Body& body) const {
   const int width = grid_.tile_width(), height = grid_.tile_height();
   const int right = (area.x1 + 1) / 2, bottom = (area.y1 + 1) / 2;
   for (int y0 = area.y0 / 2, y1 = 0; y0 < bottom; y0 = y1) {
@@ -75,7 +75,7 @@ void Correction::for_needed_cells(const Tile& area, const Body& body) const {
     for (int x0 = area.x0 / 2 / kCellStep * kCellStep, x1 = 0; x0 < right; x0 = x1) {
       x1 = std::min((x0 / width + 1) * width, right);
       const int tile = y0 / height * grid_.columns() + x0 / width;
-      if (loaded_[static_cast<std::size_t>(tile)] != 0) body(Tile{x0, y0, x1, y1, tile});
+      if (loaded_[static_cast<std::size_t>(tile)] != 0) body(Tile{{x0, y0, x1, y1}, tile});
     }
   }
 }
@@ -158,14 +158,14 @@ bool Correction::open_gates() {
 // Forgets what an earlier frame lacked.
 void Correction::close_tile(const Tile& tile) {
   if (is_open(tile.index) || was_open_[static_cast<std::size_t>(tile.index)] == 0) return;
-  for (auto& plane : correction_) fill_tile(plane, tile, 0.0f);
+  for (auto& plane : correction_) fill_rect(plane, tile, 0.0f);
 }
 
 // Cells are filtered that a pixel of an open tile can reach, and loaded that the filter can reach
 // from there.
 void Correction::choose_cells() {
   std::fill(wanted_.begin(), wanted_.end(), std::uint8_t{0});
-  const auto mark = [&](std::vector<std::uint8_t>& chosen, const Tile& area, int reach) {
+  const auto mark = [&](std::vector<std::uint8_t>& chosen, const Rect& area, int reach) {
     const int left = std::max(area.x0 - reach, 0) / grid_.tile_width();
     const int right = (area.x1 + reach - 1) / grid_.tile_width();
     const int top = std::max(area.y0 - reach, 0) / grid_.tile_height();
@@ -180,7 +180,7 @@ void Correction::choose_cells() {
   for (int index = 0; index < tiles.count(); ++index) {
     if (!is_open(index)) continue;
     const Tile tile = tiles.tile(index);
-    mark(wanted_, {tile.x0 / 2, tile.y0 / 2, (tile.x1 + 1) / 2, (tile.y1 + 1) / 2, index}, 1);
+    mark(wanted_, {tile.x0 / 2, tile.y0 / 2, (tile.x1 + 1) / 2, (tile.y1 + 1) / 2}, 1);
   }
   // One tap to each side, 1 + 2 + 4 + ... cells apart; one more for the mean of factors.
   const int reach = (1 << options_.passes);
@@ -230,7 +230,7 @@ void Correction::weigh_cells(const Tile& cells) {
   for (int y = cells.y0; y < cells.y1; ++y) {
     for (int x0 = cells.x0; x0 < cells.x1; x0 += kStep) {
       const int count = std::min(kStep, cells.x1 - x0);
-      gate_.rows({2 * x0, 2 * y, 2 * (x0 + count), 2 * y + 1, 0}, 1, gate);
+      gate_.rows({2 * x0, 2 * y, 2 * (x0 + count), 2 * y + 1}, 1, gate);
       sum_windows(x0, y, count, windows);
       const float* confirmed = cells_.count.at(x0, y);
       float kept[kStep];

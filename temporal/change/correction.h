@@ -37,11 +37,11 @@ class Correction {
   /// one), for the cells that the last frame needed, while it is in the cache. To be called for all
   /// of the image before count(), in any order and on any thread (apart: cells are written up to 16
   /// pixels beside the area).
-  void place(const GBuffer& surface, const Tile& area);
+  void place(const GBuffer& surface, const Rect& area);
   /// Takes in the pixels of `area`, one or more blocks of 8 x 8 side by side: their blocks are
   /// tested, and cells are filled that the last frame needed. To be called for all of the image
   /// before process(), as place(); again for blocks that change.
-  void count(const CorrectionInputs& in, const Tile& area);
+  void count(const CorrectionInputs& in, const Rect& area);
   /// Leaves what is to be added to the prediction in correction(), and subtracts its luminance from
   /// `innovation`, which may be that of the inputs. Returns the share of confirmed pixels corrected
   /// by more than half.
@@ -62,7 +62,7 @@ class Correction {
   };
 
   template <typename Body>
-  void for_needed_cells(const Tile& area, const Body& body) const;
+  void for_needed_cells(const Rect& area, const Body& body) const;
   void count_tiles();
   [[nodiscard]] bool open_gates();
   void close_tile(const Tile& tile);

@@ -21,7 +21,7 @@ namespace eigenlight {
 /// further samples there (spatial/sample_budget.h).
 ///
 /// `tile` starts and ends at multiples of 16 pixels (vectors) or ends with the image.
-void find_edges(const Frame& frame, const TapOptions& options, const Tile& tile,
+void find_edges(const FrameInput& frame, const TapOptions& options, const Rect& tile,
                 Plane<std::uint8_t>& edge);
 
 /// Longest ages in frames.
@@ -32,6 +32,6 @@ struct LongestAges {
 /// age <- min(age, max(longest, samples)): below this frame's own samples (over their regular
 /// number) an age would weigh them more than once.
 void shorten_ages(const Plane<std::uint8_t>& edge, const Plane<float>& samples,
-                  const LongestAges& longest, const Tile& tile, Plane<float>& age);
+                  const LongestAges& longest, const Rect& tile, Plane<float>& age);
 
 }  // namespace eigenlight

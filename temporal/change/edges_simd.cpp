@@ -46,7 +46,7 @@ struct Wanted {
   VF cosine;
 };
 
-Wanted Ask(const Frame& frame, const TapOptions& options, const Seen& own, int x, int y) {
+Wanted Ask(const FrameInput& frame, const TapOptions& options, const Seen& own, int x, int y) {
   const F d;
   const Camera& camera = frame.camera;
   const glm::mat3& m = camera.world_to_view;
@@ -94,7 +94,7 @@ MF SameBeside(const Wanted& w, const GBuffer& surface, int x, int y, int step) {
 }
 
 // Where all neighbors show the pixel's own surface.
-MF IsInside(const Frame& frame, const TapOptions& options, int x, int y) {
+MF IsInside(const FrameInput& frame, const TapOptions& options, int x, int y) {
   const GBuffer& surface = frame.surface;
   const Wanted wanted = Ask(frame, options, Load(surface, x, y), x, y);
   MF same = hn::And(SameBeside(wanted, surface, x, y, -1), SameBeside(wanted, surface, x, y, 1));
@@ -105,7 +105,7 @@ MF IsInside(const Frame& frame, const TapOptions& options, int x, int y) {
   return same;
 }
 
-void FindEdges(const Frame& frame, const TapOptions& options, const Tile& tile,
+void FindEdges(const FrameInput& frame, const TapOptions& options, const Rect& tile,
                Plane<std::uint8_t>& edge) {
   const F d;
   const I di;
@@ -127,7 +127,7 @@ void FindEdges(const Frame& frame, const TapOptions& options, const Tile& tile,
 }
 
 void ShortenAges(const Plane<std::uint8_t>& edge, const Plane<float>& samples,
-                 const LongestAges& longest, const Tile& tile, Plane<float>& age) {
+                 const LongestAges& longest, const Rect& tile, Plane<float>& age) {
   const F d;
   const I di;
   const hn::Rebind<std::uint8_t, F> bytes;
@@ -155,14 +155,14 @@ namespace eigenlight {
 HWY_EXPORT(FindEdges);
 HWY_EXPORT(ShortenAges);
 
-void find_edges(const Frame& frame, const TapOptions& options, const Tile& tile,
+void find_edges(const FrameInput& frame, const TapOptions& options, const Rect& tile,
                 Plane<std::uint8_t>& edge) {
   const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(FindEdges)(frame, options, tile, edge);
 }
 
 void shorten_ages(const Plane<std::uint8_t>& edge, const Plane<float>& samples,
-                  const LongestAges& longest, const Tile& tile, Plane<float>& age) {
+                  const LongestAges& longest, const Rect& tile, Plane<float>& age) {
   const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(ShortenAges)(edge, samples, longest, tile, age);
 }

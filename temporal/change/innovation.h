@@ -38,7 +38,7 @@ struct InnovationOutputs {
 /// mean of v over min(new age / s, 16) frames: where history is dropped, so is its variance.
 ///
 /// `tile` starts and ends at multiples of 16 pixels (vectors) or ends with the image.
-void innovation_tile(const InnovationInputs& in, const InnovationOptions& options, const Tile& tile,
+void innovation_tile(const InnovationInputs& in, const InnovationOptions& options, const Rect& tile,
                      const InnovationOutputs& out);
 
 }  // namespace eigenlight

@@ -49,7 +49,7 @@ void SumNine(float* values, int count, float* sums) {
 }
 
 // Horizontal window sums of row y for the pixels of the tile.
-void SumRow(const InnovationInputs& in, const Tile& tile, int y, Sums& sums) {
+void SumRow(const InnovationInputs& in, const Rect& tile, int y, Sums& sums) {
   const F d;
   const int lanes = static_cast<int>(hn::Lanes(d)), count = tile.x1 - tile.x0;
   alignas(64) float confirmed[kWidth], value[kWidth], square[kWidth];
@@ -112,7 +112,7 @@ Found TestInnovation(const InnovationOptions& options, VF n, VF s, VF count, VF 
 }
 
 // New ages and variances of a row of pixels from their windows.
-void FinishRow(const InnovationInputs& in, const InnovationOptions& options, const Tile& row,
+void FinishRow(const InnovationInputs& in, const InnovationOptions& options, const Rect& row,
                const Sums& window, const InnovationOutputs& out) {
   const F d;
   const int lanes = static_cast<int>(hn::Lanes(d));
@@ -166,7 +166,7 @@ void AddRows(const Sums* const (&rows)[kWindow], int used, int count, Sums& wind
   }
 }
 
-void FilterPart(const InnovationInputs& in, const InnovationOptions& options, const Tile& tile,
+void FilterPart(const InnovationInputs& in, const InnovationOptions& options, const Rect& tile,
                 const InnovationOutputs& out) {
   // A ring of row sums: each row of the window is summed once.
   Sums ring[kWindow];
@@ -184,14 +184,14 @@ void FilterPart(const InnovationInputs& in, const InnovationOptions& options, co
     }
     Sums window;
     AddRows(rows, used, tile.x1 - tile.x0, window);
-    FinishRow(in, options, {tile.x0, y, tile.x1, y + 1, tile.index}, window, out);
+    FinishRow(in, options, {tile.x0, y, tile.x1, y + 1}, window, out);
   }
 }
 
-void InnovationTile(const InnovationInputs& in, const InnovationOptions& options, const Tile& tile,
+void InnovationTile(const InnovationInputs& in, const InnovationOptions& options, const Rect& tile,
                     const InnovationOutputs& out) {
   for (int x = tile.x0; x < tile.x1; x += kPart) {
-    FilterPart(in, options, {x, tile.y0, std::min(x + kPart, tile.x1), tile.y1, tile.index}, out);
+    FilterPart(in, options, {x, tile.y0, std::min(x + kPart, tile.x1), tile.y1}, out);
   }
 }
 
@@ -204,7 +204,7 @@ namespace eigenlight {
 
 HWY_EXPORT(InnovationTile);
 
-void innovation_tile(const InnovationInputs& in, const InnovationOptions& options, const Tile& tile,
+void innovation_tile(const InnovationInputs& in, const InnovationOptions& options, const Rect& tile,
                      const InnovationOutputs& out) {
   const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(InnovationTile)(in, options, tile, out);

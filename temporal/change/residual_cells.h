@@ -9,7 +9,7 @@
 namespace eigenlight {
 
 struct CorrectionInputs {
-  const Frame& guides;
+  const FrameInput& guides;
   const Planes<3>& residual;       ///< u - prediction
   const Plane<float>& innovation;  ///< its luminance; NaN: not confirmed
   const Plane<float>& age;         ///< n, of the history
@@ -27,7 +27,7 @@ struct ResidualBlock {
 };
 
 /// Tests the blocks of one row from the left; `area` is all of their pixels.
-void test_blocks(const CorrectionInputs& in, const Tile& area, std::span<ResidualBlock> blocks);
+void test_blocks(const CorrectionInputs& in, const Rect& area, std::span<ResidualBlock> blocks);
 
 /// Cell (X, Y) stands for the pixels 2 X + {0, 1}, 2 Y + {0, 1} that show the surface of its upper
 /// left one: same object, and normals within the cosine that taps ask for. These are its members.
@@ -53,11 +53,11 @@ inline constexpr int kCellStep = 8;
 
 /// Gives the cells of `tile` (in units of cells; its left edge a multiple of kCellStep) their
 /// members and their geometry.
-void place_cells(const GBuffer& surface, const Tile& tile, ResidualCells& cells);
+void place_cells(const GBuffer& surface, const Rect& tile, ResidualCells& cells);
 
 /// Fills the placed cells of `tile` with what their confirmed members hold. Those without any lose
 /// their geometry, until they are placed again.
-void load_cells(const CorrectionInputs& in, const Tile& tile, ResidualCells& cells);
+void load_cells(const CorrectionInputs& in, const Rect& tile, ResidualCells& cells);
 
 struct SpreadOutputs {
   Planes<3>& correction;     ///< set
@@ -67,7 +67,7 @@ struct SpreadOutputs {
 /// Brings cells.mean back to the confirmed pixels of `tile`: the mean of the four cells around,
 /// bilinear, of those that show the pixel's surface (object, normal and plane, as for taps);
 /// where none does, of those that show its object; else 0.
-void spread_cells(const ResidualCells& cells, const Frame& guides, const Tile& tile,
+void spread_cells(const ResidualCells& cells, const FrameInput& guides, const Rect& tile,
                   const SpreadOutputs& out);
 
 }  // namespace eigenlight

@@ -43,7 +43,7 @@ struct ColumnSums {
 };
 
 // Adds a row of at most kColumns pixels.
-void AddRow(const CorrectionInputs& in, const Tile& row, ColumnSums& sums) {
+void AddRow(const CorrectionInputs& in, const Rect& row, ColumnSums& sums) {
   const B d;
   for (int x = row.x0; x < row.x1; x += static_cast<int>(hn::Lanes(d))) {
     const auto load = [&](const Plane<float>& plane) {
@@ -82,12 +82,12 @@ ResidualBlock TestBlock(const ColumnSums& sums, int column) {
 }
 
 // Row by row: those of a block are too short for the next one to be foreseen.
-void TestBlocks(const CorrectionInputs& in, const Tile& area, std::span<ResidualBlock> blocks) {
+void TestBlocks(const CorrectionInputs& in, const Rect& area, std::span<ResidualBlock> blocks) {
   std::size_t next = 0;
   for (int x0 = area.x0; x0 < area.x1; x0 += ColumnSums::kColumns) {
     const int x1 = std::min(x0 + ColumnSums::kColumns, area.x1);
     ColumnSums sums{};
-    for (int y = area.y0; y < area.y1; ++y) AddRow(in, {x0, y, x1, y + 1, 0}, sums);
+    for (int y = area.y0; y < area.y1; ++y) AddRow(in, {x0, y, x1, y + 1}, sums);
     for (int x = x0; x < x1; x += kResidualBlock) blocks[next++] = TestBlock(sums, x - x0);
   }
 }
@@ -201,7 +201,7 @@ void LoadCellVector(const CorrectionInputs& in, const Place& place, ResidualCell
 
 // Calls visit(place, x, y) for each vector of the cells of `tile`.
 template <typename Visit>
-void ForEachVector(const Tile& tile, Extent pixels, const Visit& visit) {
+void ForEachVector(const Rect& tile, Extent pixels, const Visit& visit) {
   const B d;
   for (int y = tile.y0; y < tile.y1; ++y) {
     const bool inside_y = 2 * y + 1 < pixels.height;
@@ -214,13 +214,13 @@ void ForEachVector(const Tile& tile, Extent pixels, const Visit& visit) {
   }
 }
 
-void PlaceCells(const GBuffer& surface, const Tile& tile, ResidualCells& cells) {
+void PlaceCells(const GBuffer& surface, const Rect& tile, ResidualCells& cells) {
   ForEachVector(tile, surface.depth.extent(), [&](const Place& place, int x, int y) {
     PlaceCellVector(surface, place, cells, x, y);
   });
 }
 
-void LoadCells(const CorrectionInputs& in, const Tile& tile, ResidualCells& cells) {
+void LoadCells(const CorrectionInputs& in, const Rect& tile, ResidualCells& cells) {
   ForEachVector(tile, in.guides.extent(),
                 [&](const Place& place, int x, int y) { LoadCellVector(in, place, cells, x, y); });
 }
@@ -236,20 +236,20 @@ HWY_EXPORT(TestBlocks);
 HWY_EXPORT(PlaceCells);
 HWY_EXPORT(LoadCells);
 
-void test_blocks(const CorrectionInputs& in, const Tile& area, std::span<ResidualBlock> blocks) {
+void test_blocks(const CorrectionInputs& in, const Rect& area, std::span<ResidualBlock> blocks) {
   EL_DCHECK(area.y1 - area.y0 <= kResidualBlock);
   EL_DCHECK(area.x0 % kResidualBlock == 0 && area.y0 % kResidualBlock == 0);
   const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(TestBlocks)(in, area, blocks);
 }
 
-void place_cells(const GBuffer& surface, const Tile& tile, ResidualCells& cells) {
+void place_cells(const GBuffer& surface, const Rect& tile, ResidualCells& cells) {
   EL_DCHECK(tile.x0 % kCellStep == 0);
   const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(PlaceCells)(surface, tile, cells);
 }
 
-void load_cells(const CorrectionInputs& in, const Tile& tile, ResidualCells& cells) {
+void load_cells(const CorrectionInputs& in, const Rect& tile, ResidualCells& cells) {
   EL_DCHECK(tile.x0 % kCellStep == 0);
   const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(LoadCells)(in, tile, cells);

@@ -42,7 +42,7 @@ struct View {
   }
 };
 
-Taker LoadTaker(const View& view, const Frame& frame, const TapOptions& taps, int x, int y) {
+Taker LoadTaker(const View& view, const FrameInput& frame, const TapOptions& taps, int x, int y) {
   const F d;
   const auto load = [&](const Plane<float>& plane) {
     prefetch_below(plane, x, y);
@@ -186,7 +186,7 @@ void GiveTaker(const Taker& taker, int x, int y, const SpreadOutputs& out) {
   hn::StoreU(hn::Sub(before, luminance), d, innovation);
 }
 
-void SpreadCells(const ResidualCells& cells, const Frame& guides, const Tile& tile,
+void SpreadCells(const ResidualCells& cells, const FrameInput& guides, const Rect& tile,
                  const SpreadOutputs& out) {
   const int lanes = static_cast<int>(hn::Lanes(F()));
   const View view{cells, cells.guides.camera};
@@ -215,7 +215,7 @@ namespace eigenlight {
 
 HWY_EXPORT(SpreadCells);
 
-void spread_cells(const ResidualCells& cells, const Frame& guides, const Tile& tile,
+void spread_cells(const ResidualCells& cells, const FrameInput& guides, const Rect& tile,
                   const SpreadOutputs& out) {
   const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   HWY_DYNAMIC_DISPATCH(SpreadCells)(cells, guides, tile, out);

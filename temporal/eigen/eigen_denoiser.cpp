@@ -1,5 +1,7 @@
 #include "temporal/eigen/eigen_denoiser.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -172,7 +174,7 @@ void EigenDenoiser::warp_row(const Tile& row) {
 }
 
 bool EigenDenoiser::resample(FrameSource& source, std::int64_t planned) {
-  const bool resampled = planned > 0 && source.resample(extra_, frame_, residual_);
+  const bool resampled = planned > 0 && eigenlight::resample(source, extra_, frame_, residual_);
   if (resampled) report_.extra_samples = planned;
   return resampled;
 }
@@ -300,11 +302,11 @@ void EigenDenoiser::update_row(const Tile& row) {
 
 // What an earlier frame showed there is gone.
 void EigenDenoiser::clear_tile(const Tile& tile) {
-  for (auto& plane : output_) fill_tile(plane, tile, 0.0f);
-  fill_tile(new_age_, tile, 0.0f);
+  for (auto& plane : output_) fill_rect(plane, tile, 0.0f);
+  fill_rect(new_age_, tile, 0.0f);
   bases_.clear(tile);
-  fill_tile(output_variance_, tile, 0.0f);
-  fill_tile(young_, tile, std::uint8_t{0});
+  fill_rect(output_variance_, tile, 0.0f);
+  fill_rect(young_, tile, std::uint8_t{0});
 }
 
 void EigenDenoiser::filter() {

@@ -7,7 +7,7 @@
 namespace eigenlight {
 
 struct FilterInputs {
-  const Frame& frame;
+  const FrameInput& frame;
   const Plane<float>& old_age;       ///< of the history, 0: the pixel is new
   const Plane<float>& age;           ///< with this frame
   const Plane<std::uint8_t>& young;  ///< 1 where age is below EigenOptions::young

@@ -98,7 +98,7 @@ int FireflyBound::bound_block(const FireflyInputs& in, const Tile& tile,
   return bounded;
 }
 
-void FireflyBound::count(const FireflyInputs& in, const FireflyOutputs& out, const Tile& area) {
+void FireflyBound::count(const FireflyInputs& in, const FireflyOutputs& out, const Rect& area) {
   EL_DCHECK(area.x0 % kFireflyBlock == 0 && area.y0 % kFireflyBlock == 0);
   for (int y = area.y0; y < area.y1; y += kFireflyBlock) {
     for (int x = area.x0; x < area.x1; x += kFireflyBlock) {

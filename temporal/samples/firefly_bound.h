@@ -49,7 +49,7 @@ struct FireflyOutputs {
 
 /// Counts the pixels of a block whose left edge is a multiple of 8.
 [[nodiscard]] FireflyBlock count_fireflies(const FireflyInputs& in, float deviations,
-                                           const FireflyOutputs& out, const Tile& block);
+                                           const FireflyOutputs& out, const Rect& block);
 
 /// Bounded influence (Huber 1964). A residual r of luminance, with
 ///   sigma^2 = v (1/s + 1/n) + (0.1 expected)^2,
@@ -70,7 +70,7 @@ class FireflyBound {
 
   /// Counts the pixels of `area`, whose edges are multiples of 8 or those of the image, and changes
   /// nothing. To be called for all of the image, in any order and on any thread, before bound().
-  void count(const FireflyInputs& in, const FireflyOutputs& out, const Tile& area);
+  void count(const FireflyInputs& in, const FireflyOutputs& out, const Rect& area);
   /// Returns how many pixels it bounded. Calls changed(block), on any thread, after those of a
   /// block were; of one row of blocks from left to right.
   std::int64_t bound(const FireflyInputs& in, const FireflyOutputs& out,

@@ -31,7 +31,7 @@ V Expected(hn::Mask<D> confirmed, V variance, V samples, V age, V expected) {
 }
 
 FireflyBlock CountFireflies(const FireflyInputs& in, float deviations, const FireflyOutputs& out,
-                            const Tile& block) {
+                            const Rect& block) {
   const D d;
   const int lanes = static_cast<int>(hn::Lanes(d));
   const V zero = hn::Zero(d), square = hn::Set(d, deviations * deviations);
@@ -67,7 +67,7 @@ namespace eigenlight {
 HWY_EXPORT(CountFireflies);
 
 FireflyBlock count_fireflies(const FireflyInputs& in, float deviations, const FireflyOutputs& out,
-                             const Tile& block) {
+                             const Rect& block) {
   const FloatTrapsOff lanes_behind_masks_may_hold_anything;
   return HWY_DYNAMIC_DISPATCH(CountFireflies)(in, deviations, out, block);
 }

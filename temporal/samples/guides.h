@@ -12,6 +12,6 @@ struct GuideCounts {
 };
 
 /// Counts the pixels [x0, x1) of row y0 of `row`.
-[[nodiscard]] GuideCounts count_guides(const GBuffer& surface, const Tile& row);
+[[nodiscard]] GuideCounts count_guides(const GBuffer& surface, const Rect& row);
 
 }  // namespace eigenlight

@@ -15,7 +15,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using F = hn::ScalableTag<float>;
 using VF = hn::Vec<F>;
 
-GuideCounts CountGuides(const GBuffer& surface, const Tile& row) {
+GuideCounts CountGuides(const GBuffer& surface, const Rect& row) {
   const F d;
   const hn::RebindToUnsigned<F> du;
   const int lanes = static_cast<int>(hn::Lanes(d)), y = row.y0;
@@ -56,7 +56,7 @@ namespace eigenlight {
 
 HWY_EXPORT(CountGuides);
 
-GuideCounts count_guides(const GBuffer& surface, const Tile& row) {
+GuideCounts count_guides(const GBuffer& surface, const Rect& row) {
   const FloatTrapsOff comparisons_meet_nan;
   return HWY_DYNAMIC_DISPATCH(CountGuides)(surface, row);
 }

@@ -14,9 +14,9 @@ struct SampleCounts {
   std::int64_t non_finite = 0;  ///< surfaces with NaN or Inf in any channel
 
   /// Counts a pixel. Returns whether its sample is usable: on a surface, and finite.
-  bool take(const Frame& frame, int x, int y) {
+  bool take(const FrameInput& frame, int x, int y) {
     if (frame.surface.id(x, y) == 0) return false;
-    const auto& u = frame.indirect;
+    const auto& u = frame.lights[0].radiance;
     const bool finite =
         std::isfinite(u[0](x, y)) && std::isfinite(u[1](x, y)) && std::isfinite(u[2](x, y));
     ++surface;

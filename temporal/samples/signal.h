@@ -9,7 +9,7 @@
 namespace eigenlight {
 
 struct SignalInputs {
-  const Frame& frame;
+  const FrameInput& frame;
   const Plane<std::uint8_t>* extra;  ///< samples granted beyond frame.spp, or null: none
   const Planes<3>* extra_mean;       ///< of those, where there are any; null with `extra`; may be
                                      ///< the same as SignalOutputs::light
@@ -28,10 +28,10 @@ struct SignalCounts {
 
 /// Fills the pixels of a tile at most kSegment wide. Light is usable on surfaces where the sum of
 /// its channels' magnitudes is at most kLargestLight.
-SignalCounts merge_samples(const SignalInputs& in, const Tile& tile, const SignalOutputs& out);
+SignalCounts merge_samples(const SignalInputs& in, const Rect& tile, const SignalOutputs& out);
 
 struct FreshInputs {
-  const Frame& frame;
+  const FrameInput& frame;
   const Plane<float>& samples;     ///< as merge_samples leaves it, for the whole image
   const Plane<float>& age;         ///< of the history
   const Plane<float>& brightness;  ///< of blocks of 8 x 8 pixels, for the whole image
@@ -41,7 +41,7 @@ struct FreshInputs {
 /// 7 around, whose structure counts as noise until history tells them apart; 0 where there is but
 /// one. No luminance counts for more than its block's `brightness` (FireflyBound): a firefly in
 /// the first frame must not make room for all that follow.
-void fresh_variance(const FreshInputs& in, const Tile& tile, Plane<float>& variance);
+void fresh_variance(const FreshInputs& in, const Rect& tile, Plane<float>& variance);
 
 struct EstimateInputs {
   const Plane<std::uint32_t>& id;
@@ -56,6 +56,6 @@ struct EstimateOutputs {
 };
 
 /// What the spatial filters are told of the pixels of `tile`.
-void estimate_variance(const EstimateInputs& in, const Tile& tile, const EstimateOutputs& out);
+void estimate_variance(const EstimateInputs& in, const Rect& tile, const EstimateOutputs& out);
 
 }  // namespace eigenlight

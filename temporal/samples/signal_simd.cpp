@@ -22,7 +22,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using F = hn::ScalableTag<float>;
 using VF = hn::Vec<F>;
 
-SignalCounts MergeSamples(const SignalInputs& in, const Tile& tile, const SignalOutputs& out) {
+SignalCounts MergeSamples(const SignalInputs& in, const Rect& tile, const SignalOutputs& out) {
   const F d;
   const hn::RebindToUnsigned<F> du;
   const hn::Rebind<std::uint8_t, F> bytes;
@@ -43,9 +43,9 @@ SignalCounts MergeSamples(const SignalInputs& in, const Tile& tile, const Signal
       const VF scale = hn::Div(hn::Set(d, 1.0f), samples);
       VF light[3], size = zero;
       for (std::size_t c = 0; c < 3; ++c) {
-        prefetch_below(in.frame.indirect[c], x, y);
+        prefetch_below(in.frame.lights[0].radiance[c], x, y);
         prefetch_below(out.light[c], x, y);
-        light[c] = hn::Mul(regular, hn::LoadU(d, in.frame.indirect[c].row(y) + x));
+        light[c] = hn::Mul(regular, hn::LoadU(d, in.frame.lights[0].radiance[c].row(y) + x));
         if (in.extra_mean != nullptr) {
           prefetch_below((*in.extra_mean)[c], x, y);
           const VF more = hn::Mul(extra, hn::LoadU(d, (*in.extra_mean)[c].row(y) + x));
@@ -75,7 +75,7 @@ SignalCounts MergeSamples(const SignalInputs& in, const Tile& tile, const Signal
   return counts;
 }
 
-void EstimateVariance(const EstimateInputs& in, const Tile& tile, const EstimateOutputs& out) {
+void EstimateVariance(const EstimateInputs& in, const Rect& tile, const EstimateOutputs& out) {
   const F d;
   const hn::RebindToUnsigned<F> du;
   const hn::Rebind<std::uint8_t, F> bytes;
@@ -109,16 +109,17 @@ struct Sums {
 };
 
 // Window sums of row y along x for the pixels of the tile.
-void SumRow(const FreshInputs& in, const Tile& tile, int y, Sums& sums) {
-  const Frame& frame = in.frame;
+void SumRow(const FreshInputs& in, const Rect& tile, int y, Sums& sums) {
+  const FrameInput& frame = in.frame;
   alignas(64) double count[kSegment + 2 * kRadius] = {}, value[kSegment + 2 * kRadius] = {};
   const int first = std::max(tile.x0 - kRadius, 0);
   const int last = std::min(tile.x1 + kRadius, in.samples.width());
   const int shift = first - (tile.x0 - kRadius);
   const float* used = in.samples.at(first, y);
   const float* brightness = in.brightness.row(y / kFireflyBlock);
-  const float* u[3] = {frame.indirect[0].at(first, y), frame.indirect[1].at(first, y),
-                       frame.indirect[2].at(first, y)};
+  const float* u[3] = {frame.lights[0].radiance[0].at(first, y),
+                       frame.lights[0].radiance[1].at(first, y),
+                       frame.lights[0].radiance[2].at(first, y)};
   for (int i = 0; i < last - first; ++i) {
     const bool usable = used[i] > 0.0f;
     const double l = 0.2126 * static_cast<double>(u[0][i]) + 0.7152 * static_cast<double>(u[1][i]) +
@@ -140,8 +141,8 @@ void SumRow(const FreshInputs& in, const Tile& tile, int y, Sums& sums) {
 }
 
 // The new pixels of a tile lie in this part of it; empty without any.
-Tile FreshPart(const Frame& frame, const Plane<float>& age, const Tile& tile) {
-  Tile part{tile.x1, tile.y1, tile.x0, tile.y0, tile.index};
+Rect FreshPart(const FrameInput& frame, const Plane<float>& age, const Rect& tile) {
+  Rect part{tile.x1, tile.y1, tile.x0, tile.y0};
   for (int y = tile.y0; y < tile.y1; ++y) {
     const float* n = age.row(y);
     const std::uint32_t* id = frame.surface.id.row(y);
@@ -161,7 +162,7 @@ Tile FreshPart(const Frame& frame, const Plane<float>& age, const Tile& tile) {
 }
 
 // Sets the new pixels of a row from the sums of their windows.
-void SetFresh(const FreshInputs& in, const Tile& part, int y, const Sums& window,
+void SetFresh(const FreshInputs& in, const Rect& part, int y, const Sums& window,
               Plane<float>& variance) {
   const float* n = in.age.at(part.x0, y);
   const std::uint32_t* id = in.frame.surface.id.at(part.x0, y);
@@ -177,8 +178,8 @@ void SetFresh(const FreshInputs& in, const Tile& part, int y, const Sums& window
   }
 }
 
-void FreshVariance(const FreshInputs& in, const Tile& tile, Plane<float>& variance) {
-  const Tile part = FreshPart(in.frame, in.age, tile);
+void FreshVariance(const FreshInputs& in, const Rect& tile, Plane<float>& variance) {
+  const Rect part = FreshPart(in.frame, in.age, tile);
   if (part.x0 >= part.x1) return;
   // A ring of row sums: each row of the window is summed once.
   std::array<Sums, kWindow> ring;
@@ -217,17 +218,17 @@ HWY_EXPORT(MergeSamples);
 HWY_EXPORT(EstimateVariance);
 HWY_EXPORT(FreshVariance);
 
-SignalCounts merge_samples(const SignalInputs& in, const Tile& tile, const SignalOutputs& out) {
+SignalCounts merge_samples(const SignalInputs& in, const Rect& tile, const SignalOutputs& out) {
   EL_DCHECK(tile.x1 - tile.x0 <= kSegment);
   const FloatTrapsOff comparisons_meet_nan;
   return HWY_DYNAMIC_DISPATCH(MergeSamples)(in, tile, out);
 }
 
-void estimate_variance(const EstimateInputs& in, const Tile& tile, const EstimateOutputs& out) {
+void estimate_variance(const EstimateInputs& in, const Rect& tile, const EstimateOutputs& out) {
   HWY_DYNAMIC_DISPATCH(EstimateVariance)(in, tile, out);
 }
 
-void fresh_variance(const FreshInputs& in, const Tile& tile, Plane<float>& variance) {
+void fresh_variance(const FreshInputs& in, const Rect& tile, Plane<float>& variance) {
   EL_DCHECK(tile.x1 - tile.x0 <= kSegment);
   const FloatTrapsOff comparisons_meet_nan;
   HWY_DYNAMIC_DISPATCH(FreshVariance)(in, tile, variance);

@@ -52,7 +52,8 @@ void antialias(benchmark::State& state, const char* text) {
   Planes<3> color;
   std::int64_t rays = 0;
   for (auto _ : state) {
-    rays += atrium.source.picture(options, atrium.frame, atrium.frame.indirect, color).rays;
+    rays +=
+        atrium.source.picture(options, atrium.frame, atrium.frame.lights[0].radiance, color).rays;
   }
   if (!(test::mean(color).x > 0.0)) return state.SkipWithError("the picture is black");
   count_rays(state, rays);

@@ -58,7 +58,7 @@ struct Stages {
         expected(extent),
         age(extent),
         new_age(extent) {
-    copy_planes(current.indirect, residual);
+    copy_planes(current.lights[0].radiance, residual);
     variance.fill(0.05f);
     samples.fill(1.0f);
     age.fill(8.0f);
@@ -89,7 +89,7 @@ struct Stages {
     for_each_tile(tiles, [&](const Tile& tile) {
       TapSegment taps;
       for (int y = tile.y0; y < tile.y1; ++y) {
-        const Tile row{tile.x0, y, tile.x1, y + 1, tile.index};
+        const Tile row{{tile.x0, y, tile.x1, y + 1}, tile.index};
         compute_taps(current, previous, {}, row, taps);
         warp_bases(history, taps, row, warped);
         warp_plane(variance, taps, row, warped_variance);

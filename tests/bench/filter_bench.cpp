@@ -36,7 +36,7 @@ void filter_room(benchmark::State& state, const Options& options, const Work& wo
   weight.fill(1.0f);
   Planes<3> out = make_planes<3>(extent);
   Filter filter(extent, options);
-  const auto run = [&] { filter.process({frame, frame.indirect, weight}, out); };
+  const auto run = [&] { filter.process({frame, frame.lights[0].radiance, weight}, out); };
   run();
   if (!is_sound(out, extent)) return state.SkipWithError("nothing filtered");
   measure(state, extent, work, timed(run));

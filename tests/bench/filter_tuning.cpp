@@ -142,14 +142,14 @@ Figures measure(const Shots& noisy, const std::array<Shots, 2>& references, Spat
   weight.fill(1.0f);
   for (std::size_t i = 0; i < noisy.size(); ++i) {
     const GBuffer& surface = noisy[i].surface;
-    if (filter != nullptr) filter->process({noisy[i], noisy[i].indirect, weight}, out);
+    if (filter != nullptr) filter->process({noisy[i], noisy[i].lights[0].radiance, weight}, out);
     MetricFrame frame{.test = make_planes<3>(kSize),
                       .reference = make_planes<3>(kSize),
                       .reference_b = make_planes<3>(kSize),
                       .bits = Plane<std::uint8_t>(kSize)};
-    shade(filter != nullptr ? out : noisy[i].indirect, surface, frame.test);
-    shade(references[0][i].indirect, surface, frame.reference);
-    shade(references[1][i].indirect, surface, frame.reference_b);
+    shade(filter != nullptr ? out : noisy[i].lights[0].radiance, surface, frame.test);
+    shade(references[0][i].lights[0].radiance, surface, frame.reference);
+    shade(references[1][i].lights[0].radiance, surface, frame.reference_b);
     for (int y = 0; y < kSize.height; ++y) {
       for (int x = 0; x < kSize.width; ++x) {
         frame.bits(x, y) = surface.id(x, y) != 0 ? kFiniteBit | kSurfaceBit : kFiniteBit;

@@ -35,7 +35,7 @@ class CopyFloor {
   /// Milliseconds of CPU time.
   [[nodiscard]] double run() {
     StageClock clock;
-    for_each_tile(grid_, [&](const Tile& tile) {
+    for_each_tile(grid_, [&](const Rect& tile) {
       for (int y = tile.y0; y < tile.y1; ++y) {
         const std::size_t begin = offset(tile.x0, y), end = offset(tile.x1, y);
         std::memcpy(to_.data() + begin, from_.data() + begin, end - begin);

@@ -28,7 +28,7 @@ Frame closed_room(Extent extent) {
   Frame frame;
   frame.resize(extent);
   const Frame& from = lap.frames[0];
-  copy_planes(from.indirect, frame.indirect);
+  copy_planes(from.lights[0].radiance, frame.lights[0].radiance);
   copy_planes(from.surface.normal, frame.surface.normal);
   for (int y = 0; y < extent.height; ++y) {
     for (int x = 0; x < extent.width; ++x) {
@@ -55,7 +55,7 @@ cv::Mat light(const Frame& frame) {
   for (int y = 0; y < image.rows; ++y) {
     for (int x = 0; x < image.cols; ++x) {
       for (int c = 0; c < 3; ++c) {
-        image.at<cv::Vec3f>(y, x)[c] = frame.indirect[static_cast<std::size_t>(c)](x, y);
+        image.at<cv::Vec3f>(y, x)[c] = frame.lights[0].radiance[static_cast<std::size_t>(c)](x, y);
       }
     }
   }
@@ -90,7 +90,7 @@ void guided_and_opencv(benchmark::State& state) {
   Planes<3> ours = make_planes<3>(extent);
   cv::Mat theirs;
   GuidedSpatial filter(extent, options);
-  const auto run = timed([&] { filter.process({frame, frame.indirect, weight}, ours); });
+  const auto run = timed([&] { filter.process({frame, frame.lights[0].radiance, weight}, ours); });
   const auto run_opencv = timed([&] {
     cv::ximgproc::guidedFilter(guide, source, theirs, radius,
                                static_cast<double>(options.epsilon_normal));

@@ -48,7 +48,7 @@ void time_pyramid(benchmark::State& state) {
   Room720 room(state);
   PyramidFilter filter(room.frame.extent(), {.blur_radius = static_cast<float>(state.range(1))});
   run_timed(state, room.frame, [&] {
-    filter.process({room.frame, room.frame.indirect, room.weight}, room.out);
+    filter.process({room.frame, room.frame.lights[0].radiance, room.weight}, room.out);
   });
   if (!(room.out[0](room.frame.extent().width / 2, room.frame.extent().height / 2) > 0.0f)) {
     state.SkipWithError("nothing filtered");
@@ -62,7 +62,7 @@ void time_guided(benchmark::State& state) {
   wanted.fill(1);
   run_timed(state, room.frame, [&] {
     benchmark::DoNotOptimize(
-        filter.process({room.frame, room.frame.indirect, room.weight, wanted}, room.out));
+        filter.process({room.frame, room.frame.lights[0].radiance, room.weight, wanted}, room.out));
   });
 }
 
@@ -71,7 +71,7 @@ void time_atrous(benchmark::State& state) {
   Atrous filter(room.frame.extent(), {.passes = static_cast<int>(state.range(1))});
   Plane<float> variance(room.frame.extent());
   run_timed(state, room.frame, [&] {
-    copy_planes(room.frame.indirect, room.out);
+    copy_planes(room.frame.lights[0].radiance, room.out);
     variance.fill(0.05f);
     benchmark::DoNotOptimize(filter.process(room.frame, 0.0f, room.out, variance));
   });

@@ -4,6 +4,7 @@
 // normal 3 and id; of the one before, depth, normal 3 and id. Histories: svgf and bmfr two bases
 // with an age, read and written; hems2010 twelve floats for each of 16 past frames, one of them
 // written; meyer2006 hands out a picture whose samples (12 words) it read ahead.
+#include "temporal/methods.h"
 #include "tests/bench/floors.h"
 #include "tests/bench/register.h"
 #include "tests/bench/room_source.h"
@@ -12,21 +13,6 @@ namespace eigenlight {
 namespace {
 
 constexpr int kFrameBytes = 16 * kFloat, kPicture = 4 * kFloat;
-
-/// The first frames of a source: meyer2006 reads until the end.
-class FirstFrames final : public FrameSource {
- public:
-  FirstFrames(FrameSource& source, int frames) : source_(source), left_(frames) {}
-  [[nodiscard]] bool next(Frame& frame) override { return left_-- > 0 && source_.next(frame); }
-  [[nodiscard]] bool resample(const Plane<std::uint8_t>& extra, Frame& frame,
-                              Planes<3>& mean) override {
-    return source_.resample(extra, frame, mean);
-  }
-
- private:
-  FrameSource& source_;
-  int left_;
-};
 
 /// Time of a step of `method` after enough frames for all of its history.
 void step_of(benchmark::State& state, std::string_view method, const Work& work) {
@@ -57,14 +43,14 @@ void hems2010(benchmark::State& state) {
 /// A frame's share of reading ahead, analysis and its own picture.
 void meyer2006(benchmark::State& state) {
   const Setting setting(state);
-  RoomSource source(setting.lap());
   const auto run = [&] {
-    FirstFrames frames(source, RoomLap::kFrames);
+    // meyer2006 reads until the end.
+    RoomSource source(setting.lap(), RoomSource::Laps::kOne);
     const auto denoiser = make_denoiser("meyer2006", {setting.extent, setting.bases});
     StageClock clock;
     bool sound = true;
     int count = 0;
-    while (const Planes<3>* out = denoiser->step(frames)) {
+    while (const Planes<3>* out = denoiser->step(source)) {
       sound = sound && is_sound(*out, setting.extent);
       ++count;
     }

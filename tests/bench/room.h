@@ -89,18 +89,18 @@ struct RoomLap {
   explicit RoomLap(Extent size, RoomLight kind = RoomLight::kChanging) : extent(size), light(kind) {
     for (int i = 0; i < kFrames; ++i) {
       Frame& frame = frames[static_cast<std::size_t>(i)];
-      frame.surface.resize(extent);
-      ensure_extent(frame.indirect, extent);
-      ensure_extent(frame.motion, extent);
-      ensure_extent(frame.previous_depth, extent);
+      frame.resize_input(extent);
+      frame.index = i;
+      frame.previous_index = i - 1;
+      frame.spp = kSamples;
       frame.camera = camera(i);
-      for_each_tile(stage_tiles(extent), [&](const Tile& tile) { fill(i, tile); });
+      for_each_tile(stage_tiles(extent), [&](const Rect& tile) { fill(i, tile); });
     }
   }
 
   Extent extent;
   RoomLight light;
-  std::array<Frame, kFrames> frames;
+  std::vector<Frame> frames = std::vector<Frame>(kFrames);
 
  private:
   static constexpr float kQuarter = 0.5f * 3.14159265f;  // kFrames of them are a lap
@@ -112,7 +112,7 @@ struct RoomLap {
     return look_at(eye, eye + glm::vec3(0.05f, 0.02f, 1.0f), {0, 1, 0}, 60.0f, extent);
   }
 
-  void fill(int i, const Tile& tile) {
+  void fill(int i, const Rect& tile) {
     Frame& frame = frames[static_cast<std::size_t>(i)];
     const Camera previous = camera((i + kFrames - 1) % kFrames);
     const float phase = light == RoomLight::kSteady ? 0.0f : kQuarter * static_cast<float>(i);
@@ -138,7 +138,7 @@ struct RoomLap {
           const auto plane = static_cast<std::size_t>(c);
           frame.surface.normal[plane](x, y) = hit.normal[c];
           frame.surface.albedo[plane](x, y) = 0.3f + 0.1f * static_cast<float>(hit.id % 5);
-          frame.indirect[plane](x, y) = radiance[c] * noise(i, x, y);
+          frame.lights[0].radiance[plane](x, y) = radiance[c] * noise(i, x, y);
         }
       }
     }

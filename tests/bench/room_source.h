@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "frame/memory_source.h"
 #include "temporal/stage_clock.h"
 #include "tests/bench/room.h"
 
@@ -10,56 +11,50 @@ namespace eigenlight {
 
 class RoomSource final : public FrameSource {
  public:
-  explicit RoomSource(const RoomLap& lap) : lap_(lap) {}
+  enum class Laps { kOne, kForEver };
+
+  explicit RoomSource(const RoomLap& lap, Laps laps = Laps::kForEver)
+      : frames_(lap.frames, samples_nearby) {
+    if (laps == Laps::kForEver) frames_.repeat();
+  }
 
   [[nodiscard]] bool next(Frame& frame) override {
     StageClock clock;
-    const Frame& stored = current();
-    frame.resize(lap_.extent);
-    frame.index = index_;
-    frame.previous_index = index_ - 1;
-    frame.is_static = false;
-    frame.spp = RoomLap::kSamples;
-    frame.camera = stored.camera;
-    frame.surface.depth.copy_from(stored.surface.depth);
-    frame.surface.id.copy_from(stored.surface.id);
-    copy_planes(stored.surface.normal, frame.surface.normal);
-    copy_planes(stored.surface.albedo, frame.surface.albedo);
-    copy_planes(stored.indirect, frame.indirect);
-    copy_planes(stored.motion, frame.motion);
-    frame.previous_depth.copy_from(stored.previous_depth);
-    ++index_;
+    const bool found = frames_.next(frame);
     cpu_ms_ += clock.lap().cpu_ms;
-    return true;
+    return found;
   }
-
-  /// The samples of a pixel nearby: noise of the right size, where it is wanted.
-  [[nodiscard]] bool resample(const Plane<std::uint8_t>& extra, Frame& frame,
-                              Planes<3>& mean) override {
+  [[nodiscard]] bool resample(const Plane<std::uint8_t>& extra, FrameInput& frame,
+                              std::span<Planes<3>* const> means) override {
     StageClock clock;
-    const auto [width, height] = lap_.extent;
-    for (int y = 0; y < height; ++y) {
-      for (int x = 0; x < width; ++x) {
-        const bool wanted = extra(x, y) > 0;
-        for (std::size_t c = 0; c < 3; ++c) {
-          mean[c](x, y) = wanted ? frame.indirect[c]((x + 2) % width, y) : 0.0f;
-        }
-      }
-    }
+    const bool resampled = frames_.resample(extra, frame, means);
     cpu_ms_ += clock.lap().cpu_ms;
-    return true;
+    return resampled;
   }
 
   /// CPU milliseconds spent here since the last call.
   [[nodiscard]] double take_cpu_ms() { return std::exchange(cpu_ms_, 0.0); }
 
  private:
-  [[nodiscard]] const Frame& current() const {
-    return lap_.frames[static_cast<std::size_t>(index_ % RoomLap::kFrames)];
+  // The samples of a pixel nearby: noise of the right size, where it is wanted.
+  static bool samples_nearby(const Plane<std::uint8_t>& extra, const FrameInput& frame,
+                             std::span<Planes<3>* const> means) {
+    const auto [width, height] = frame.extent();
+    for (std::size_t layer = 0; layer < means.size(); ++layer) {
+      for (int c = 0; c < 3; ++c) {
+        const Plane<float>& from = frame.lights[layer].radiance[c];
+        Plane<float>& mean = (*means[layer])[c];
+        for (int y = 0; y < height; ++y) {
+          for (int x = 0; x < width; ++x) {
+            mean(x, y) = extra(x, y) > 0 ? from((x + 2) % width, y) : 0.0f;
+          }
+        }
+      }
+    }
+    return true;
   }
 
-  const RoomLap& lap_;
-  int index_ = 0;
+  MemorySource frames_;
   double cpu_ms_ = 0.0;
 };
 

@@ -30,7 +30,7 @@ void filter_radius(benchmark::State& state, Options options, const Work& work) {
   Plane<float> weight(setting.extent);
   Planes<3> out = make_planes<3>(setting.extent);
   weight.fill(1.0f);
-  const auto run = [&] { filter.process({frame, frame.indirect, weight}, out); };
+  const auto run = [&] { filter.process({frame, frame.lights[0].radiance, weight}, out); };
   run();
   if (!is_sound(out, setting.extent)) return state.SkipWithError("nothing filtered");
   measure(state, setting.extent, work, timed(run));

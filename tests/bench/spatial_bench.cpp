@@ -60,7 +60,7 @@ void atrous(benchmark::State& state) {
   Atrous filter(setting.extent, options);
   // No pixel is quiet: everything is filtered, each time the same.
   const auto run = [&] {
-    copy_planes(inputs.frame.indirect, inputs.out);
+    copy_planes(inputs.frame.lights[0].radiance, inputs.out);
     inputs.variance.fill(0.05f);
     StageClock clock;
     benchmark::DoNotOptimize(filter.process(inputs.frame, 0.0f, inputs.out, inputs.variance));
@@ -77,7 +77,8 @@ void guided(benchmark::State& state) {
   GuidedFilter filter(setting.extent, {});
   const auto run = [&] {
     benchmark::DoNotOptimize(filter.process(
-        {inputs.frame, inputs.frame.indirect, inputs.samples, inputs.wanted}, inputs.out));
+        {inputs.frame, inputs.frame.lights[0].radiance, inputs.samples, inputs.wanted},
+        inputs.out));
   };
   run();
   if (!is_sound(inputs.out, setting.extent)) return state.SkipWithError("nothing filtered");

@@ -39,12 +39,12 @@ struct AtrousImage {
 
 namespace detail {
 
-inline glm::dvec3 guide_normal(const Frame& guides, glm::ivec2 p) {
+inline glm::dvec3 guide_normal(const FrameInput& guides, glm::ivec2 p) {
   const auto& n = guides.surface.normal;
   return {n[0](p.x, p.y), n[1](p.x, p.y), n[2](p.x, p.y)};
 }
 
-inline glm::dvec3 guide_position(const Frame& guides, glm::ivec2 p) {
+inline glm::dvec3 guide_position(const FrameInput& guides, glm::ivec2 p) {
   const Camera& camera = guides.camera;
   const glm::dvec2 at =
       (glm::dvec2(p) + 0.5 - glm::dvec2(camera.center)) / static_cast<double>(camera.focal);
@@ -71,7 +71,7 @@ inline double smooth_sigma(const AtrousImage& image, glm::ivec2 p) {
 using Earlier = std::vector<double>;
 
 /// w(p, q) of the header.
-inline double atrous_weight(const Frame& guides, const AtrousOptions& options,
+inline double atrous_weight(const FrameInput& guides, const AtrousOptions& options,
                             const AtrousImage& image, const Earlier& earlier, glm::ivec2 p,
                             glm::ivec2 q) {
   if (p == q) return 1.0;
@@ -101,7 +101,7 @@ inline double atrous_weight(const Frame& guides, const AtrousOptions& options,
   return geometry * decay(light);
 }
 
-inline AtrousImage atrous_pass(const Frame& guides, const AtrousOptions& options,
+inline AtrousImage atrous_pass(const FrameInput& guides, const AtrousOptions& options,
                                const AtrousImage& image, int step, const Earlier& earlier = {}) {
   const std::array<double, 5> kernel =
       options.radius == 2 ? std::array{1 / 16.0, 1 / 4.0, 3 / 8.0, 1 / 4.0, 1 / 16.0}

@@ -10,7 +10,7 @@
 namespace eigenlight::reference {
 
 /// W(p, q) of the header without the weight of q.
-inline double bilateral_weight(const Frame& frame, const CrossBilateralOptions& options,
+inline double bilateral_weight(const FrameInput& frame, const CrossBilateralOptions& options,
                                glm::ivec2 p, glm::ivec2 q) {
   const SurfacePoint a = surface_point(frame, p), b = surface_point(frame, q);
   const glm::dvec2 offset(p - q);

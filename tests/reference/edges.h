@@ -14,7 +14,7 @@ struct Edge {
   double margin = 1.0;  ///< how far the nearest decision was from falling the other way
 };
 
-inline Edge edge(const Frame& frame, const TapOptions& options, glm::ivec2 p) {
+inline Edge edge(const FrameInput& frame, const TapOptions& options, glm::ivec2 p) {
   Edge out;
   const auto& id = frame.surface.id;
   double blend = 0.0;

@@ -19,11 +19,11 @@ struct WindowFit {
   Light offset = Light::Zero();
 };
 
-inline bool has_surface(const Frame& frame, int x, int y) {
+inline bool has_surface(const FrameInput& frame, int x, int y) {
   return is_usable_surface(frame.surface, x, y);
 }
 
-inline Guide guide_at(const Frame& frame, Guides guides, int x, int y) {
+inline Guide guide_at(const FrameInput& frame, Guides guides, int x, int y) {
   const auto& s = frame.surface;
   Guide all(4);
   all << s.normal[0](x, y), s.normal[1](x, y), s.normal[2](x, y),

@@ -10,7 +10,7 @@
 
 namespace eigenlight::reference {
 
-inline glm::dvec3 normal_at(const Frame& frame, int x, int y) {
+inline glm::dvec3 normal_at(const FrameInput& frame, int x, int y) {
   const auto& n = frame.surface.normal;
   return {n[0](x, y), n[1](x, y), n[2](x, y)};
 }

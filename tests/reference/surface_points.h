@@ -17,7 +17,7 @@ inline glm::dvec3 vector_at(const Planes<3>& planes, glm::ivec2 p) {
 }
 
 /// The position is relative to the eye.
-inline SurfacePoint surface_point(const Frame& frame, glm::ivec2 p) {
+inline SurfacePoint surface_point(const FrameInput& frame, glm::ivec2 p) {
   const Camera& camera = frame.camera;
   const double depth = static_cast<double>(frame.surface.depth(p.x, p.y));
   const glm::dvec2 image =

@@ -36,7 +36,7 @@ inline double svgf_smooth_variance(const SvgfImage& image, glm::ivec2 p) {
 }
 
 // The slope of depth along an offset, by the plane through the pixel: depths of two points of it.
-inline glm::dvec2 svgf_slope(const Frame& guides, glm::ivec2 p) {
+inline glm::dvec2 svgf_slope(const FrameInput& guides, glm::ivec2 p) {
   const Camera& camera = guides.camera;
   const auto& n = guides.surface.normal;
   const glm::dvec3 normal =

@@ -35,8 +35,8 @@ inline glm::dvec3 position(const Camera& camera, glm::dvec2 pixel, double depth)
 
 /// Taps of pixel (x, y). The pixel's place in the previous frame is rounded to float, as pixel
 /// coordinates are.
-inline Taps taps(const Frame& current, const PreviousSurface& previous, const TapOptions& options,
-                 glm::ivec2 p) {
+inline Taps taps(const FrameInput& current, const PreviousSurface& previous,
+                 const TapOptions& options, glm::ivec2 p) {
   Taps out;
   const Extent extent = previous.surface.depth.extent();
   const float column = static_cast<float>(p.x) + current.motion[0](p.x, p.y);

@@ -25,7 +25,7 @@ inline SumPixel sum_pixel(const SumInputs& in, int x, int y) {
   SumPixel pixel;
   bool finite = true;
   for (int c = 0; c < 3; ++c) {
-    const double u = in.frame.indirect[static_cast<std::size_t>(c)](x, y);
+    const double u = in.frame.lights[0].radiance[static_cast<std::size_t>(c)](x, y);
     pixel.r[c] = u - v.value(x, y, c, 0);
     finite = finite && std::abs(u) <= kLargestLight;
   }
@@ -43,7 +43,7 @@ inline double sum_excess(const SumPixel& pixel) {
 }
 
 /// The pixels of a tile, row by row, few outliers held back.
-inline std::vector<SumPixel> sum_pixels(const SumInputs& in, const Tile& tile) {
+inline std::vector<SumPixel> sum_pixels(const SumInputs& in, const Rect& tile) {
   std::vector<SumPixel> pixels;
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0; x < tile.x1; ++x) pixels.push_back(sum_pixel(in, x, y));
@@ -58,7 +58,7 @@ inline std::vector<SumPixel> sum_pixels(const SumInputs& in, const Tile& tile) {
   return pixels;
 }
 
-inline TileSums tile_sums(const SumInputs& in, const Tile& tile) {
+inline TileSums tile_sums(const SumInputs& in, const Rect& tile) {
   TileSums sums;
   const BasisField& v = in.bases;
   const std::vector<SumPixel> pixels = sum_pixels(in, tile);

@@ -64,7 +64,7 @@ Frame nth(LiveSource& source, int n) {
 }
 
 void expect_same(const Frame& a, const Frame& b) {
-  EXPECT_TRUE(test::same_bits(a.indirect, b.indirect));
+  EXPECT_TRUE(test::same_bits(a.lights[0].radiance, b.lights[0].radiance));
   EXPECT_TRUE(test::same_bits(a.direct, b.direct));
   EXPECT_TRUE(test::same_bits(a.emission, b.emission));
   EXPECT_TRUE(test::same_bits(a.motion, b.motion));
@@ -109,11 +109,11 @@ TEST(LiveSource, FramesAndSeedsAreIndependent) {
   LiveSource source(scene, animation, o, {0, 1});
   const Frame first = nth(source, 0);
   const Frame second = nth(source, 0);
-  EXPECT_FALSE(test::same_bits(first.indirect, second.indirect));
+  EXPECT_FALSE(test::same_bits(first.lights[0].radiance, second.lights[0].radiance));
   EXPECT_TRUE(test::same_bits(first.surface.normal, second.surface.normal));
   o.seed = 1;
   LiveSource other(scene, animation, o, {0});
-  EXPECT_FALSE(test::same_bits(first.indirect, nth(other, 0).indirect));
+  EXPECT_FALSE(test::same_bits(first.lights[0].radiance, nth(other, 0).lights[0].radiance));
 }
 
 TEST(LiveSource, NegativeFramesAreFramesLikeOthers) {
@@ -133,7 +133,7 @@ TEST(LiveSource, NegativeFramesAreFramesLikeOthers) {
   const Frame other = nth(shifted, 0);
   EXPECT_TRUE(test::same_bits(last_negative.motion, other.motion));
   EXPECT_TRUE(test::same_bits(last_negative.surface.normal, other.surface.normal));
-  EXPECT_FALSE(test::same_bits(last_negative.indirect, other.indirect));
+  EXPECT_FALSE(test::same_bits(last_negative.lights[0].radiance, other.lights[0].radiance));
   expect_same(nth(source, 0), nth(alone, 0));
   EXPECT_THROW(LiveSource(scene, animation, o, {std::numeric_limits<int>::min()}),
                std::invalid_argument);
@@ -259,14 +259,14 @@ TEST(LiveSource, ResampleAddsIndependentSamplesOfTheSameMean) {
   extra.fill(32);
   extra(5, 5) = 0;
   Planes<3> first, second;
-  ASSERT_TRUE(source.resample(extra, frame, first));
+  ASSERT_TRUE(resample(source, extra, frame, first));
   EXPECT_GT(frame.rays, rays + 32 * 100);
-  ASSERT_TRUE(source.resample(extra, frame, second));
-  const double expected = test::mean(frame.indirect).x;
+  ASSERT_TRUE(resample(source, extra, frame, second));
+  const double expected = test::mean(frame.lights[0].radiance).x;
   ASSERT_GT(expected, 0.1);
   EXPECT_NEAR(test::mean(first).x, expected, 0.02 * expected);
   EXPECT_NEAR(test::mean(second).x, expected, 0.02 * expected);
-  EXPECT_FALSE(test::same_bits(first, frame.indirect));
+  EXPECT_FALSE(test::same_bits(first, frame.lights[0].radiance));
   EXPECT_FALSE(test::same_bits(first, second));
   EXPECT_EQ(first[0](5, 5), 0.0f);
 }
@@ -286,10 +286,10 @@ TEST(LiveSource, ResampleContinuesTheSequenceOfThePixel) {
   Plane<std::uint8_t> extra(o.extent);
   extra.fill(24);
   Planes<3> more;
-  ASSERT_TRUE(parts.resample(extra, part, more));
+  ASSERT_TRUE(resample(parts, extra, part, more));
   for (int x = 0; x < o.extent.width; ++x) {
-    const float sum = (8.0f * part.indirect[0](x, 12) + 24.0f * more[0](x, 12)) / 32.0f;
-    EXPECT_NEAR(sum, all.indirect[0](x, 12), 1e-5f);
+    const float sum = (8.0f * part.lights[0].radiance[0](x, 12) + 24.0f * more[0](x, 12)) / 32.0f;
+    EXPECT_NEAR(sum, all.lights[0].radiance[0](x, 12), 1e-5f);
   }
 }
 
@@ -303,7 +303,7 @@ TEST(LiveSource, NonFiniteSamplesAreCountedAndLeftOut) {
   int unknown = 0;
   for (int y = 0; y < o.extent.height; ++y) {
     for (int x = 0; x < o.extent.width; ++x) {
-      const float value = frame.indirect[0](x, y);
+      const float value = frame.lights[0].radiance[0](x, y);
       EXPECT_FALSE(std::isinf(value));
       if (std::isnan(value)) ++unknown;
     }
@@ -322,11 +322,11 @@ TEST(LiveSource, DirectLightThatNobodyWantsCostsNoRays) {
   const Frame a = nth(with, 1), b = nth(without, 1);
   EXPECT_LT(b.rays, a.rays - a.extent().pixels());
   EXPECT_EQ(test::mean(b.direct), glm::dvec3(0.0));
-  EXPECT_TRUE(test::same_bits(a.indirect, b.indirect));
+  EXPECT_TRUE(test::same_bits(a.lights[0].radiance, b.lights[0].radiance));
   EXPECT_TRUE(test::same_bits(a.emission, b.emission));
   EXPECT_TRUE(test::same_bits(a.motion, b.motion));
   Planes<3> out;
-  EXPECT_THROW(without.picture({.mode = AntialiasMode::kLookup}, b, b.indirect, out),
+  EXPECT_THROW(without.picture({.mode = AntialiasMode::kLookup}, b, b.lights[0].radiance, out),
                std::invalid_argument);
 }
 

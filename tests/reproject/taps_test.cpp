@@ -30,7 +30,7 @@ Count compare_with_twin(const Frame& current, const Frame& before) {
   TapSegment taps;
   for (int y = 0; y < extent.height; ++y) {
     for (int x0 = 0; x0 < extent.width; x0 += kSegment) {
-      const Tile row{x0, y, std::min(x0 + kSegment, extent.width), y + 1, 0};
+      const Rect row{x0, y, std::min(x0 + kSegment, extent.width), y + 1};
       compute_taps(current, previous, options, row, taps);
       for (int x = row.x0; x < row.x1; ++x) {
         const reference::Taps twin = reference::taps(current, previous, options, {x, y});
@@ -97,7 +97,7 @@ class TapRules : public ::testing::Test {
   std::array<float, 4> weights(glm::ivec2 pixel = {3, 2}) {
     TapSegment taps;
     compute_taps(current_, {before_.camera, before_.surface}, options_,
-                 {0, pixel.y, 8, pixel.y + 1, 0}, taps);
+                 {0, pixel.y, 8, pixel.y + 1}, taps);
     const auto i = static_cast<std::size_t>(pixel.x);
     return {taps.weight[0][i], taps.weight[1][i], taps.weight[2][i], taps.weight[3][i]};
   }

@@ -17,7 +17,7 @@ namespace {
 using Place = std::function<glm::ivec2(int x)>;
 
 // Taps of random weights, none of one pixel in five, 0 beside the image.
-TapSegment make_taps(Extent extent, const Tile& row, std::uint32_t seed, const Place& place) {
+TapSegment make_taps(Extent extent, const Rect& row, std::uint32_t seed, const Place& place) {
   TapSegment taps{};
   for (int x = row.x0; x < row.x1; ++x) {
     PixelRandom random(seed, x, row.y0);
@@ -43,14 +43,14 @@ Place anywhere(Extent extent, std::uint32_t seed) {
   };
 }
 
-BasisField warped(const BasisField& from, const TapSegment& taps, const Tile& row) {
+BasisField warped(const BasisField& from, const TapSegment& taps, const Rect& row) {
   BasisField to(from.extent(), from.bases());
   fill_bases(to, 5.0f);
   warp_bases(from, taps, row, to);
   return to;
 }
 
-void expect_warp(const BasisField& from, const TapSegment& taps, const Tile& row) {
+void expect_warp(const BasisField& from, const TapSegment& taps, const Rect& row) {
   const BasisField to = warped(from, taps, row);
   for (int x = row.x0; x < row.x1; ++x) {
     const auto i = static_cast<std::size_t>(x - row.x0);
@@ -67,7 +67,7 @@ void expect_warp(const BasisField& from, const TapSegment& taps, const Tile& row
   }
 }
 
-void expect_plane_warp(const Plane<float>& from, const TapSegment& taps, const Tile& row) {
+void expect_plane_warp(const Plane<float>& from, const TapSegment& taps, const Rect& row) {
   Plane<float> to(from.extent());
   to.fill(5.0f);
   warp_plane(from, taps, row, to);
@@ -81,7 +81,7 @@ void expect_plane_warp(const Plane<float>& from, const TapSegment& taps, const T
 void for_each_row(Extent extent, const std::function<void(const Tile&)>& visit) {
   for (const int y : {0, extent.height / 2, extent.height - 1}) {
     for (int x0 = 0; x0 < extent.width; x0 += kSegment) {
-      visit({x0, y, std::min(x0 + kSegment, extent.width), y + 1, 0});
+      visit({x0, y, std::min(x0 + kSegment, extent.width), y + 1});
     }
   }
 }
@@ -90,7 +90,7 @@ TEST(Warp, AgreesWithTheTwinForEveryNumberOfBasesOnEveryTarget) {
   for (const Extent extent : kSweepExtents) {
     for (int bases = 1; bases <= kMaxBases; ++bases) {
       const BasisField from = random_bases(extent, bases, 7);
-      for_each_row(extent, [&](const Tile& row) {
+      for_each_row(extent, [&](const Rect& row) {
         const TapSegment taps = make_taps(extent, row, 3, anywhere(extent, 4));
         for_each_target([&] { expect_warp(from, taps, row); });
       });
@@ -107,7 +107,7 @@ TEST(Warp, AgreesWithTheTwinWhereNeighborsMoveAlikeOnEveryTarget) {
     for (int n = 0; n < 25 * 5; ++n) {
       const glm::ivec2 shift{n % 5 - 2, n / 5 % 5 - 2};
       const int odd = std::array{-1, 0, 1, 7, 16}[static_cast<std::size_t>(n / 25)];
-      for_each_row(extent, [&](const Tile& row) {
+      for_each_row(extent, [&](const Rect& row) {
         const TapSegment taps = make_taps(extent, row, 5, [&](int x) {
           const int i = x - row.x0;
           const bool apart = n % 2 == 0 ? i == odd : i >= odd && odd >= 0;
@@ -125,7 +125,7 @@ TEST(Warp, AgreesWithTheTwinWhereNeighborsMoveAlikeOnEveryTarget) {
 TEST(Warp, WritesTheRowItIsGivenAndZerosBehindIt) {
   const Extent extent{65, 17};
   const BasisField from = random_bases(extent, 3, 7);
-  const Tile row{64, 4, 65, 5, 0};
+  const Rect row{64, 4, 65, 5};
   const TapSegment taps = make_taps(extent, row, 3, anywhere(extent, 4));
   for_each_target([&] {
     const BasisField to = warped(from, taps, row);
@@ -146,7 +146,7 @@ TEST(Warp, WritesTheRowItIsGivenAndZerosBehindIt) {
 TEST(Warp, ReadsNoTapOfWeightZero) {
   const Extent extent{65, 17};
   Plane<float> from = random_plane(extent, 9, 0.5f, 2.0f);
-  const Tile row{0, 4, 64, 5, 0};
+  const Rect row{0, 4, 64, 5};
   TapSegment taps = make_taps(extent, row, 3, [](int x) { return glm::ivec2(x - 1, 6); });
   BasisField bases = random_bases(extent, 2, 7);
   for (int x = 0; x < extent.width; x += 3) {
@@ -187,7 +187,7 @@ TEST(BasisField, AssignedTakesWhatBothHave) {
 TEST(BasisField, ForgetsATile) {
   BasisField field({65, 17}, 2);
   fill_bases(field, 4.0f);
-  field.clear(Tile{64, 3, 65, 5, 0});
+  field.clear({64, 3, 65, 5});
   EXPECT_EQ(field.value(64, 4, 2, 1), 0.0f);
   EXPECT_EQ(field.age(64, 3), 0.0f);
   EXPECT_EQ(field.age(63, 3), 4.0f);

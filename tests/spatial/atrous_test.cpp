@@ -21,7 +21,7 @@ struct Scene {
         color(make_planes<3>(extent)),
         variance(random_plane(extent, 5, 0.01f, 0.3f)),
         earlier(random_plane(extent, 6, 0.3f, 1.5f)) {
-    copy_planes(guides.indirect, color);
+    copy_planes(guides.lights[0].radiance, color);
     forget_some();
   }
   // One wall, seen straight.

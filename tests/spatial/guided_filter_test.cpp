@@ -1,5 +1,6 @@
 #include "spatial/guided_filter.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -37,7 +37,7 @@ inline void fill_fake_frame(int number, Frame& frame, Planes<3>& denoised, Plane
                                   static_cast<std::uint32_t>(y), static_cast<std::uint32_t>(c));
         const float light = is_sky ? 0.0f : 0.2f + 0.5f * std::exp(-20.0f * disc * disc);
         denoised[c](x, y) = light;
-        frame.indirect[c](x, y) = light * (0.5f + to_unit(key));
+        frame.lights[0].radiance[c](x, y) = light * (0.5f + to_unit(key));
         frame.direct[c](x, y) = is_sky ? 0.0f : 0.3f * u;
         frame.emission[c](x, y) = is_sky ? 0.6f + 0.1f * static_cast<float>(c) : 0.0f;
         frame.surface.albedo[c](x, y) = is_sky ? 0.0f : 0.8f - 0.2f * static_cast<float>(c) * v;

@@ -25,11 +25,11 @@ class PrecisionSource final : public FrameSource {
     extra_.fill(0);
     return source_.next(frame);
   }
-  [[nodiscard]] bool resample(const Plane<std::uint8_t>& extra, Frame& frame,
-                              Planes<3>& mean) override {
-    if (!source_.resample(extra, frame, mean)) return false;
+  [[nodiscard]] bool resample(const Plane<std::uint8_t>& extra, FrameInput& frame,
+                              std::span<Planes<3>* const> means) override {
+    if (!source_.resample(extra, frame, means)) return false;
     extra_ = extra.clone();
-    copy_planes(mean, mean_);
+    copy_planes(*means[0], mean_);
     return true;
   }
   [[nodiscard]] const Plane<std::uint8_t>& extra() const { return extra_; }

@@ -83,12 +83,12 @@ inline void disturb(PixelRandom& random, Frame& frame, int x, int y) {
 inline void fill_light(const RandomFrameOptions& options, PixelRandom& random, Frame& frame, int x,
                        int y) {
   const bool shown = frame.surface.id(x, y) != 0;
-  for (auto& plane : frame.indirect) {
+  for (auto& plane : frame.lights[0].radiance) {
     plane(x, y) = shown ? options.light * random.between(0.0f, 2.0f) : 0.0f;
   }
   const float kind = random.uniform();
   if (!shown || !options.non_finite || kind > 0.02f) return;
-  frame.indirect[static_cast<std::size_t>(kind * 150.0f) % 3](x, y) =
+  frame.lights[0].radiance[static_cast<std::size_t>(kind * 150.0f) % 3](x, y) =
       kind < 0.01f ? std::numeric_limits<float>::quiet_NaN()
                    : std::numeric_limits<float>::infinity();
 }

@@ -70,9 +70,9 @@ struct Sequence {
 inline void apply(const Fault& fault, Frame& frame) {
   if (fault.frame != frame.index) return;
   const auto c = static_cast<std::size_t>(fault.channel);
-  Plane<float>* const planes[] = {&frame.indirect[c],       &frame.motion[c % 2],
-                                  &frame.surface.normal[c], &frame.surface.depth,
-                                  &frame.previous_depth,    &frame.surface.albedo[c]};
+  Plane<float>* const planes[] = {&frame.lights[0].radiance[c], &frame.motion[c % 2],
+                                  &frame.surface.normal[c],     &frame.surface.depth,
+                                  &frame.previous_depth,        &frame.surface.albedo[c]};
   Plane<float>& plane = *planes[static_cast<std::size_t>(fault.layer)];
   for (int y = fault.y; y < std::min(fault.y + fault.height, plane.height()); ++y) {
     for (int x = fault.x; x < std::min(fault.x + fault.width, plane.width()); ++x) {

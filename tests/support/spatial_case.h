@@ -16,7 +16,7 @@ struct SpatialCase {
       : frame(make_random_frame({.extent = extent}, 1)),
         signal(make_planes<3>(extent)),
         weight(random_plane(extent, 9, 0.5f, 4.0f)) {
-    copy_planes(frame.indirect, signal);
+    copy_planes(frame.lights[0].radiance, signal);
     for (int y = 0; y < extent.height; ++y) {
       for (int x = 0; x < extent.width; ++x) {
         if (PixelRandom(4, x, y).uniform() < 0.1f) weight(x, y) = 0.0f;

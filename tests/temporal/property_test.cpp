@@ -87,7 +87,7 @@ std::int64_t pixels_without_light(const Frame& frame) {
   for (int y = 0; y < frame.extent().height; ++y) {
     for (int x = 0; x < frame.extent().width; ++x) {
       const bool finite =
-          std::all_of(frame.indirect.begin(), frame.indirect.end(),
+          std::all_of(frame.lights[0].radiance.begin(), frame.lights[0].radiance.end(),
                       [&](const Plane<float>& plane) { return std::isfinite(plane(x, y)); });
       count += frame.surface.id(x, y) != 0 && !finite ? 1 : 0;
     }
@@ -110,7 +110,7 @@ float most_gain(std::string_view method) {
 // Largest light of a frame that is a number.
 float brightest(const Frame& frame) {
   float most = 0.0f;
-  for (const Plane<float>& plane : frame.indirect) {
+  for (const Plane<float>& plane : frame.lights[0].radiance) {
     for (int y = 0; y < plane.height(); ++y) {
       for (int x = 0; x < plane.width(); ++x) {
         if (std::isfinite(plane(x, y))) most = std::max(most, plane(x, y));

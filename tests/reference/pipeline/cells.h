@@ -9,7 +9,7 @@
 
 namespace eigenlight::twin {
 
-inline glm::dvec3 normal_at(const Frame& frame, int x, int y) {
+inline glm::dvec3 normal_at(const FrameInput& frame, int x, int y) {
   const auto& n = frame.surface.normal;
   return {n[0](x, y), n[1](x, y), n[2](x, y)};
 }
@@ -24,7 +24,7 @@ struct Cells {
   }
 };
 
-inline void load_cell(const Residual& r, const Frame& frame, glm::ivec2 cell, Cells& cells) {
+inline void load_cell(const Residual& r, const FrameInput& frame, glm::ivec2 cell, Cells& cells) {
   const glm::ivec2 first = 2 * cell;
   const std::uint32_t id = frame.surface.id(first.x, first.y);
   double count = 0.0, noise = 0.0;
@@ -71,7 +71,7 @@ inline void weigh_cells(const CorrectionOptions& options, const TileValues& gate
 }
 
 /// What a confirmed pixel takes of the four cells around.
-inline std::array<double, 3> take_cells(const Frame& frame, Cells& cells, int x, int y) {
+inline std::array<double, 3> take_cells(const FrameInput& frame, Cells& cells, int x, int y) {
   const Camera& camera = frame.camera;
   const glm::dvec3 normal = normal_at(frame, x, y);
   const glm::dvec3 view = glm::dmat3(camera.world_to_view) * normal;
@@ -105,7 +105,7 @@ inline std::array<double, 3> take_cells(const Frame& frame, Cells& cells, int x,
 }
 
 /// Correction::process: adds to the prediction, takes from the residual, leaves what it added.
-inline void correct(const CorrectionOptions& options, const Frame& frame, Residual& r) {
+inline void correct(const CorrectionOptions& options, const FrameInput& frame, Residual& r) {
   for (auto& plane : r.correction) plane = Image(plane.extent);
   const TileValues gate = r.change = open_gates(r);
   if (std::all_of(gate.values.begin(), gate.values.end(), [](double g) { return g == 0.0; })) {

@@ -48,7 +48,7 @@ struct Sums {
 
 struct SumScene {
   const Bases& bases;
-  const Frame& frame;
+  const FrameInput& frame;
   const Image& variance;
   int active;
 };
@@ -65,7 +65,7 @@ inline SumWeight sum_weight(const SumScene& in, int x, int y) {
   constexpr std::array<double, 3> kRec709{0.2126, 0.7152, 0.0722};
   double off = 0.0;
   for (std::size_t c = 0; c < 3; ++c) {
-    const double u = static_cast<double>(in.frame.indirect[c](x, y));
+    const double u = static_cast<double>(in.frame.lights[0].radiance[c](x, y));
     if (!(std::abs(u) <= static_cast<double>(kLargestLight))) return {};
     off += kRec709[c] * (u - in.bases[0][c](x, y));
   }
@@ -77,7 +77,7 @@ inline void add_pixel(const SumScene& in, int x, int y, double weight, Sums& sum
   for (int j = 0; j < in.active; ++j) {
     double along = 0.0;
     for (std::size_t c = 0; c < 3; ++c) {
-      const double u = static_cast<double>(in.frame.indirect[c](x, y));
+      const double u = static_cast<double>(in.frame.lights[0].radiance[c](x, y));
       along += weight * in.bases[j][c](x, y) * (u - in.bases[0][c](x, y));
     }
     const double first = weight * in.bases.dot(j, 0, x, y);
@@ -89,7 +89,7 @@ inline void add_pixel(const SumScene& in, int x, int y, double weight, Sums& sum
   }
 }
 
-inline Sums tile_sums(const SumScene& in, const Tile& tile) {
+inline Sums tile_sums(const SumScene& in, const Rect& tile) {
   int used = 0, outliers = 0;
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0; x < tile.x1; ++x) {

@@ -15,7 +15,7 @@ namespace eigenlight::twin {
 /// and ends of its bases are inputs: they are decisions, which float and double may take
 /// differently where a value meets a threshold. All that is light is computed here.
 struct Given {
-  const Frame& frame;
+  const FrameInput& frame;
   bool cut;
   const Plane<std::uint8_t>& extra;  ///< samples granted
   const Planes<3>& extra_mean;       ///< their mean, where there are any
@@ -72,7 +72,7 @@ class EigenTwin {
     r_.age = bases_.age;
   }
 
-  void move(const Frame& frame) {
+  void move(const FrameInput& frame) {
     Bases moved(bases_.age.extent);
     Image variance(bases_.age.extent), earlier(bases_.age.extent);
     TapSegment taps;
@@ -80,7 +80,7 @@ class EigenTwin {
       const auto at = static_cast<std::size_t>(x % kSegment);
       if (at == 0) {
         const int end = std::min(x + kSegment, frame.extent().width);
-        compute_taps(frame, surfaces_.previous(), options_.taps, {x, y, end, y + 1, 0}, taps);
+        compute_taps(frame, surfaces_.previous(), options_.taps, {x, y, end, y + 1}, taps);
       }
       for (std::size_t t = 0; t < 4; ++t) {
         const double w = static_cast<double>(taps.weight[t][at]);
@@ -105,7 +105,7 @@ class EigenTwin {
       const double regular = std::max(in.frame.spp, 1), extra = in.extra(x, y);
       double size = 0.0;
       for (std::size_t c = 0; c < 3; ++c) {
-        double sum = regular * static_cast<double>(in.frame.indirect[c](x, y));
+        double sum = regular * static_cast<double>(in.frame.lights[0].radiance[c](x, y));
         if (extra > 0.0) sum += extra * static_cast<double>(in.extra_mean[c](x, y));
         r_.light[c](x, y) = sum / (regular + extra);
         size += std::abs(r_.light[c](x, y));
@@ -116,7 +116,7 @@ class EigenTwin {
     });
   }
 
-  void project(const Frame& frame) {
+  void project(const FrameInput& frame) {
     const TileGrid& grid = coefficients_[0].grid;
     const SumScene scene{bases_, frame, r_.variance, memory_.active()};
     std::vector<Sums> sums;
@@ -152,7 +152,7 @@ class EigenTwin {
   }
 
   // New ages, and variances of one frame.
-  void innovate(const Frame& frame) {
+  void innovate(const FrameInput& frame) {
     Image variance = r_.variance;
     new_age_.each([&](int x, int y) {
       const double n = r_.age(x, y), s = r_.samples(x, y);
@@ -179,7 +179,7 @@ class EigenTwin {
     r_.variance = std::move(variance);
   }
 
-  void shorten_memory(const Frame& frame) {
+  void shorten_memory(const FrameInput& frame) {
     const Plane<std::uint8_t> edges = find_edges(frame);
     const double most = static_cast<double>(options_.innovation.max_age);
     const double least = std::min(static_cast<double>(options_.changing), most);
@@ -196,7 +196,7 @@ class EigenTwin {
   }
 
   // By the fast kernel: where an edge is, geometry decides.
-  [[nodiscard]] Plane<std::uint8_t> find_edges(const Frame& frame) const {
+  [[nodiscard]] Plane<std::uint8_t> find_edges(const FrameInput& frame) const {
     Plane<std::uint8_t> edges(new_age_.extent);
     const TileGrid grid = stage_tiles(new_age_.extent);
     for (int i = 0; i < grid.count() && !frame.is_static; ++i) {
@@ -205,11 +205,11 @@ class EigenTwin {
     return edges;
   }
 
-  [[nodiscard]] double fresh_variance(const Frame& frame, glm::ivec2 p) const {
+  [[nodiscard]] double fresh_variance(const FrameInput& frame, glm::ivec2 p) const {
     double count = 0.0, sum = 0.0, square = 0.0;
     r_.samples.each_around(p, 3, [&](int x, int y) {
       if (!(r_.samples(x, y) > 0.0)) return;
-      const auto& u = frame.indirect;
+      const auto& u = frame.lights[0].radiance;
       const double most = r_.brightness(x / 8, y / 8);
       const double l =
           std::clamp(0.2126 * u[0](x, y) + 0.7152 * u[1](x, y) + 0.0722 * u[2](x, y), -most, most);
@@ -252,7 +252,7 @@ class EigenTwin {
     });
   }
 
-  void filter(const Frame& frame) {
+  void filter(const FrameInput& frame) {
     const Extent extent = new_age_.extent;
     Plane<std::uint8_t> young(extent);
     Light shown = make_light(extent);
@@ -279,7 +279,8 @@ class EigenTwin {
     }
   }
 
-  void young_pixels(const Frame& frame, const Plane<std::uint8_t>& young, const Planes<3>& guided) {
+  void young_pixels(const FrameInput& frame, const Plane<std::uint8_t>& young,
+                    const Planes<3>& guided) {
     new_age_.each([&](int x, int y) {
       if (young(x, y) == 0 || std::isinf(frame.surface.depth(x, y))) return;
       const double own = new_age_(x, y) / options_.young;

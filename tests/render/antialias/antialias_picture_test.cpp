@@ -45,7 +45,8 @@ Picture picture_of(const Scene& scene, const View& view, const AntialiasOptions&
   LiveSource source(scene, animation, view.options, {0});
   Picture picture;
   if (!source.next(picture.frame)) throw std::logic_error("no frame");
-  picture.stats = source.picture(aa, picture.frame, picture.frame.indirect, picture.color);
+  picture.stats =
+      source.picture(aa, picture.frame, picture.frame.lights[0].radiance, picture.color);
   return picture;
 }
 
@@ -197,16 +198,16 @@ TEST(Picture, TheFrameAndItsSamplesStayAsTheyWere) {
   LiveSource plain(scene, animation, view.options, {0});
   Frame untouched;
   Planes<3> wanted;
-  ASSERT_TRUE(plain.next(untouched) && plain.resample(extra, untouched, wanted));
+  ASSERT_TRUE(plain.next(untouched) && resample(plain, extra, untouched, wanted));
   for (const AntialiasOptions& aa : kAll) {
     LiveSource source(scene, animation, view.options, {0});
     Frame frame;
     Planes<3> color, more;
     ASSERT_TRUE(source.next(frame));
-    (void)source.picture(aa, frame, frame.indirect, color);
-    ASSERT_TRUE(source.resample(extra, frame, more));
+    (void)source.picture(aa, frame, frame.lights[0].radiance, color);
+    ASSERT_TRUE(resample(source, extra, frame, more));
     EXPECT_TRUE(test::same_bits(more, wanted));
-    EXPECT_TRUE(test::same_bits(frame.indirect, untouched.indirect));
+    EXPECT_TRUE(test::same_bits(frame.lights[0].radiance, untouched.lights[0].radiance));
     EXPECT_TRUE(test::same_bits(frame.direct, untouched.direct));
     EXPECT_TRUE(test::same_bits(frame.surface.normal, untouched.surface.normal));
     EXPECT_TRUE(test::same_bits(frame.surface.albedo, untouched.surface.albedo));
@@ -264,14 +265,14 @@ TEST(Picture, WhatItCannotRenderIsNamed) {
     };
   };
   const Planes<3> small = make_planes<3>({4, 4});
-  EXPECT_THAT(render({}, frame.indirect),
+  EXPECT_THAT(render({}, frame.lights[0].radiance),
               ThrowsMessage<std::invalid_argument>(HasSubstr("nothing to render")));
-  EXPECT_THAT(render({AntialiasMode::kSupersample, 1}, frame.indirect),
+  EXPECT_THAT(render({AntialiasMode::kSupersample, 1}, frame.lights[0].radiance),
               ThrowsMessage<std::invalid_argument>(HasSubstr("1 samples, expected 2 to 1024")));
   EXPECT_THAT(render(kSraa, small),
               ThrowsMessage<std::invalid_argument>(HasSubstr("differ in size")));
   frame.index = 1;
-  EXPECT_THAT(render(kLookup, frame.indirect),
+  EXPECT_THAT(render(kLookup, frame.lights[0].radiance),
               ThrowsMessage<std::invalid_argument>(HasSubstr("frame 1 is not the one")));
 }
 

@@ -111,7 +111,7 @@ TEST(GBuffer, SkyHasNoSurface) {
   EXPECT_EQ(frame.surface.depth(1, 1), std::numeric_limits<float>::infinity());
   EXPECT_EQ(frame.surface.id(1, 1), 0U);
   EXPECT_EQ(at(frame.surface.normal, 0, 1, 1), 0.0f);
-  EXPECT_EQ(at(frame.indirect, 0, 1, 1), 0.0f);
+  EXPECT_EQ(at(frame.lights[0].radiance, 0, 1, 1), 0.0f);
   EXPECT_EQ(at(frame.emission, 2, 1, 1), 3.0f);
   EXPECT_EQ(frame.rays, 9);  // guides only
 }

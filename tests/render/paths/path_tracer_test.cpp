@@ -56,7 +56,7 @@ TEST(PathTracer, FurnaceHoldsTheGeometricSeriesAndItsSplit) {
     EXPECT_NEAR(test::mean(frame.emission)[c], e, 1e-6 * e);
     EXPECT_NEAR(test::mean(frame.direct)[c], e, 0.01 * e);
     const double indirect = albedo / (1.0 - albedo) * e;
-    EXPECT_NEAR(test::mean(frame.indirect)[c], indirect, 0.01 * indirect);
+    EXPECT_NEAR(test::mean(frame.lights[0].radiance)[c], indirect, 0.01 * indirect);
   }
   EXPECT_EQ(frame.non_finite_samples, 0);
 }
@@ -73,7 +73,7 @@ TEST(PathTracer, EachBounceAddsOneTermOfTheSeries) {
     const Frame frame =
         render_still(scene, look_at({0, 0, 0}, {0, 0, 1}, {0, 1, 0}, 60.0f, extent), o);
     expected += std::pow(0.5, bounces);
-    EXPECT_NEAR(test::mean(frame.indirect).x, expected, 0.01) << bounces << " bounces";
+    EXPECT_NEAR(test::mean(frame.lights[0].radiance).x, expected, 0.01) << bounces << " bounces";
   }
 }
 
@@ -87,7 +87,7 @@ TEST(PathTracer, ConstantSkyOverAPlaneIsAllDirect) {
     for (int y = 0; y < 8; ++y) {
       for (int x = 0; x < 8; ++x) {
         EXPECT_FLOAT_EQ(at(frame.direct, c, x, y), scene.lights.sky[c]);
-        EXPECT_EQ(at(frame.indirect, c, x, y), 0.0f);
+        EXPECT_EQ(at(frame.lights[0].radiance, c, x, y), 0.0f);
       }
     }
   }
@@ -270,7 +270,7 @@ TEST(PathTracer, EmissionSeenByTheFirstBounceIsDirectAndCountedOnce) {
   const Extent extent{8, 8};
   const Frame frame = render_still(scene, down(extent), options(extent, 256));
   EXPECT_NEAR(test::mean(frame.direct).x, 1.0, 0.01);
-  EXPECT_EQ(test::mean(frame.indirect).x, 0.0);  // the ceiling sees only black and itself
+  EXPECT_EQ(test::mean(frame.lights[0].radiance).x, 0.0);  // the ceiling sees only black and itself
 }
 
 // Any scene of albedo a under lights of radiance at most L: direct <= L, indirect <= a / (1 - a) L.
@@ -292,8 +292,8 @@ TEST(PathTracer, LightNeverExceedsTheBoundOfTheFurnace) {
   for (int y = 0; y < extent.height; ++y) {
     for (int x = 0; x < extent.width; ++x) {
       EXPECT_LE(at(frame.direct, 0, x, y), 1.05f);
-      EXPECT_LE(at(frame.indirect, 0, x, y), 1.05f * albedo / (1.0f - albedo));
-      brightest = std::max(brightest, static_cast<double>(at(frame.indirect, 0, x, y)));
+      EXPECT_LE(at(frame.lights[0].radiance, 0, x, y), 1.05f * albedo / (1.0f - albedo));
+      brightest = std::max(brightest, static_cast<double>(at(frame.lights[0].radiance, 0, x, y)));
     }
   }
   EXPECT_GT(brightest, 0.1);

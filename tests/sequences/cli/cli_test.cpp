@@ -14,6 +14,7 @@
 #include "frame/tiles.h"
 #include "sequences/files/atomic_file.h"
 #include "sequences/files/exr_io.h"
+#include "sequences/files/shell_quote.h"
 #include "tests/support/command_line.h"
 #include "tests/support/compare.h"
 #include "tests/support/temp_dir.h"

@@ -124,7 +124,7 @@ TEST_F(ExternalRunTest, HandsOverEveryFrameAndReadsItBack) {
   for (std::size_t c = 0; c < 3; ++c) {
     for (int y = 0; y < 16; ++y) {
       for (int x = 0; x < 24; ++x) {
-        wanted[c](x, y) = frame_.surface.albedo[c](x, y) * frame_.indirect[c](x, y);
+        wanted[c](x, y) = frame_.surface.albedo[c](x, y) * frame_.lights[0].radiance[c](x, y);
       }
     }
   }

@@ -15,6 +15,7 @@
 #include "sequences/lab/paper_chen2012.h"
 #include "sequences/lab/paper_chiu2012.h"
 #include "sequences/lab/paper_scene.h"
+#include "temporal/methods.h"
 #include "tests/support/temp_dir.h"
 
 namespace eigenlight {
@@ -180,7 +181,7 @@ TEST(PaperScene, RecordedFramesAreThoseOfTheSource) {
   const auto noisy = make_denoiser("noisy", {{24, 16}, 1});
   const std::vector<Planes<3>> pictures = run_method(scene, *noisy, frames);
   ASSERT_EQ(pictures.size(), 2u);
-  const Planes<3> shown = scene.shown(frames[1], frames[1].indirect);
+  const Planes<3> shown = scene.shown(frames[1], frames[1].lights[0].radiance);
   EXPECT_EQ(mean_square(pictures[1], shown, shown, frames[1].surface.id), 0.0);
   EXPECT_GT(mean_square(pictures[0], shown, shown, frames[1].surface.id), 0.0);
 }

@@ -38,7 +38,7 @@ void expect_picture(const PyramidUse<Edge>& use) {
 
 TEST(PaperXu2024, UsesArePicturesWithAttributes) {
   const Frame frame = cornell_frame();
-  expect_picture(diffuse_use(frame, frame.indirect, 1.0f));
+  expect_picture(diffuse_use(frame, frame.lights[0].radiance, 1.0f));
   expect_picture(reflection_use(frame));
   expect_picture(depth_of_field_use(frame));
   const auto reflection = reflection_use(frame);

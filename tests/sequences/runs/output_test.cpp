@@ -28,7 +28,7 @@ struct Example {
     for (std::size_t c = 0; c < 3; ++c) {
       for (int y = 0; y < frame.extent().height; ++y) {
         for (int x = 0; x < frame.extent().width; ++x) {
-          indirect[c](x, y) = 2.0f * frame.indirect[c](x, y);
+          indirect[c](x, y) = 2.0f * frame.lights[0].radiance[c](x, y);
         }
       }
     }
@@ -100,8 +100,8 @@ TEST(Output, NothingIsClampedToTheRangeOfHalf) {
   const TempDir dir;
   Example example;
   example.frame.emission[1](2, 3) = 1e6f;
-  example.frame.indirect[0](4, 5) = std::numeric_limits<float>::quiet_NaN();
-  example.frame.indirect[0](5, 5) = std::numeric_limits<float>::infinity();
+  example.frame.lights[0].radiance[0](4, 5) = std::numeric_limits<float>::quiet_NaN();
+  example.frame.lights[0].radiance[0](5, 5) = std::numeric_limits<float>::infinity();
   FrameWriter writer(dir.path(), parse_layers(""), {});
   writer.write({example.frame, example.indirect, example.age});
   const ExrReader reader(dir / "frame.0000.exr");

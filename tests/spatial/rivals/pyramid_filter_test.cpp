@@ -28,13 +28,14 @@ struct Case {
 
   [[nodiscard]] Planes<3> filter(const GlobalIlluminationEdge& edge) const {
     Planes<3> out = make_planes<3>(frame.extent());
-    PyramidFilter(frame.extent(), edge).process({frame, frame.indirect, weight}, out);
+    PyramidFilter(frame.extent(), edge).process({frame, frame.lights[0].radiance, weight}, out);
     return out;
   }
   [[nodiscard]] Planes<3> twin(const GlobalIlluminationEdge& edge) const {
     const Plane<float> attributes = reference::surface_attributes(frame.surface);
     return reference::pyramid(reference::global_illumination_range(edge),
-                              {attributes, frame.indirect, weight}, trained_pyramid_table());
+                              {attributes, frame.lights[0].radiance, weight},
+                              trained_pyramid_table());
   }
 
   Frame frame;
@@ -72,7 +73,7 @@ TEST(PyramidFilter, WhatHasNoSurfaceIsZeroAndReachesNobody) {
       if (clean.frame.surface.id(x, y) != 0) continue;
       dirty.frame.surface.normal[1](x, y) = std::numeric_limits<float>::quiet_NaN();
       dirty.frame.surface.depth(x, y) = 1.0f;
-      dirty.frame.indirect[0](x, y) = 1e30f;
+      dirty.frame.lights[0].radiance[0](x, y) = 1e30f;
     }
   }
   const Planes<3> out = dirty.filter({});
@@ -89,19 +90,19 @@ TEST(PyramidFilter, WhatHasNoSurfaceIsZeroAndReachesNobody) {
 TEST(PyramidFilter, LightThatIsNotFiniteCountsAsMissing) {
   Case missing({70, 40}), broken({70, 40});
   for (auto* c : {&missing, &broken}) {
-    for (auto& plane : c->frame.indirect) plane = random_plane({70, 40}, 1, 0.0f, 2.0f);
+    for (auto& plane : c->frame.lights[0].radiance) plane = random_plane({70, 40}, 1, 0.0f, 2.0f);
   }
   missing.weight(33, 20) = 0.0f;
   for (const float bad :
        {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 3e38f}) {
-    broken.frame.indirect[1](33, 20) = bad;
+    broken.frame.lights[0].radiance[1](33, 20) = bad;
     EXPECT_TRUE(planes_equal(broken.filter({}), missing.filter({})));
   }
 }
 
 TEST(PyramidFilter, FlatLightStaysFlat) {
   Case c({191, 107});
-  for (auto& plane : c.frame.indirect) plane.fill(0.7f);
+  for (auto& plane : c.frame.lights[0].radiance) plane.fill(0.7f);
   const Planes<3> out = c.filter({});
   for (int y = 0; y < 107; ++y) {
     for (int x = 0; x < 191; ++x) {
@@ -126,7 +127,8 @@ TEST(PyramidFilter, GivesTheSameBitsOnAnyNumberOfThreadsAndAgain) {
   EXPECT_TRUE(planes_equal(one, three));
   PyramidFilter filter(c.frame.extent(), {});
   Planes<3> again = make_planes<3>(c.frame.extent());
-  for (int i = 0; i < 2; ++i) filter.process({c.frame, c.frame.indirect, c.weight}, again);
+  for (int i = 0; i < 2; ++i)
+    filter.process({c.frame, c.frame.lights[0].radiance, c.weight}, again);
   EXPECT_TRUE(planes_equal(one, again));
 }
 
@@ -139,9 +141,11 @@ TEST(PyramidFilter, RefusesBadOptionsAndSizes) {
   Case c({20, 20});
   PyramidFilter filter({20, 20}, {});
   Planes<3> out = make_planes<3>({20, 21});
-  EXPECT_THROW(filter.process({c.frame, c.frame.indirect, c.weight}, out), std::invalid_argument);
-  EXPECT_THROW(filter.process({c.frame, c.frame.indirect, c.weight}, c.frame.indirect),
+  EXPECT_THROW(filter.process({c.frame, c.frame.lights[0].radiance, c.weight}, out),
                std::invalid_argument);
+  EXPECT_THROW(
+      filter.process({c.frame, c.frame.lights[0].radiance, c.weight}, c.frame.lights[0].radiance),
+      std::invalid_argument);
 }
 
 }  // namespace

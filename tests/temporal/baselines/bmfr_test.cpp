@@ -20,7 +20,7 @@ void fill_with_noise(Frame& frame) {
       for (int x = 0; x < frame.extent().width; ++x) {
         if (frame.surface.id(x, y) == 0) continue;
         const std::uint32_t seed = hash_key(static_cast<std::uint32_t>(frame.index), c);
-        frame.indirect[c](x, y) = PixelRandom(seed, x, y).between(0.5f, 1.5f);
+        frame.lights[0].radiance[c](x, y) = PixelRandom(seed, x, y).between(0.5f, 1.5f);
       }
     }
   }
@@ -189,7 +189,7 @@ TEST(Bmfr, MakesNoisyLightSmooth) {
 TEST(Bmfr, KeepsConstantLightAsItIs) {
   AnalyticOptions options{.frames = 10, .noise = 0.0f};
   options.edit = [](Frame& frame) {
-    for (auto& plane : frame.indirect) plane.fill(0.75f);
+    for (auto& plane : frame.lights[0].radiance) plane.fill(0.75f);
   };
   options.slide = {0.5f, 0.25f};
   const Planes<3> out = last_picture("bmfr", options);
@@ -203,8 +203,9 @@ TEST(Bmfr, LeavesOutWhatIsNotFinite) {
   clean.slide = {0.5f, 0.5f};
   AnalyticOptions broken = clean;
   broken.edit = [](Frame& frame) {
-    if (frame.index == 0) frame.indirect[1](30, 20) = kNan;
-    if (frame.index == 3) frame.indirect[2](40, 10) = std::numeric_limits<float>::infinity();
+    if (frame.index == 0) frame.lights[0].radiance[1](30, 20) = kNan;
+    if (frame.index == 3)
+      frame.lights[0].radiance[2](40, 10) = std::numeric_limits<float>::infinity();
   };
   AnalyticSource source(broken), untouched(clean);
   Bmfr bmfr({broken.extent, 1}), other({clean.extent, 1});

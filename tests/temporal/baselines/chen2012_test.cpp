@@ -236,8 +236,9 @@ TEST(Chen2012, LeavesOutWhatIsNotFinite) {
   clean.slide = {0.5f, 0.5f};
   AnalyticOptions broken = clean;
   broken.edit = [](Frame& frame) {
-    if (frame.index == 0) frame.indirect[1](30, 20) = kNan;
-    if (frame.index == 3) frame.indirect[2](40, 10) = std::numeric_limits<float>::infinity();
+    if (frame.index == 0) frame.lights[0].radiance[1](30, 20) = kNan;
+    if (frame.index == 3)
+      frame.lights[0].radiance[2](40, 10) = std::numeric_limits<float>::infinity();
   };
   AnalyticSource source(broken), untouched(clean);
   Chen2012 chen({broken.extent, 3}), other({broken.extent, 3});

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "temporal/methods.h"
 #include "tests/support/analytic_source.h"
 
 namespace eigenlight {
@@ -24,7 +25,7 @@ TEST(FrameByFrame, HandsTheRawFrameThrough) {
     EXPECT_EQ(noisy.report().rays, 64 * 36 * 3);
     for (int y = 0; y < 36; ++y) {
       for (int x = 0; x < 64; ++x) {
-        ASSERT_EQ((*out)[1](x, y), noisy.frame().indirect[1](x, y));
+        ASSERT_EQ((*out)[1](x, y), noisy.frame().lights[0].radiance[1](x, y));
         ASSERT_EQ(noisy.age()(x, y), x < 10 ? 0.0f : 1.0f);
       }
     }
@@ -35,8 +36,8 @@ TEST(FrameByFrame, HandsTheRawFrameThrough) {
 TEST(FrameByFrame, ExcludesAndCountsPixelsThatAreNotFinite) {
   AnalyticOptions options;
   options.edit = [](Frame& frame) {
-    frame.indirect[0](3, 4) = std::numeric_limits<float>::quiet_NaN();
-    frame.indirect[2](5, 6) = std::numeric_limits<float>::infinity();
+    frame.lights[0].radiance[0](3, 4) = std::numeric_limits<float>::quiet_NaN();
+    frame.lights[0].radiance[2](5, 6) = std::numeric_limits<float>::infinity();
     frame.non_finite_samples = 7;
   };
   AnalyticSource source(options);

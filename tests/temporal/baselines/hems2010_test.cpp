@@ -69,10 +69,10 @@ TEST(Hems2010, SmoothsAlongSurfacesOnly) {
     for (int y = 0; y < 36; ++y) {
       for (int x = 0; x < 64; ++x) {
         if (x >= 32) frame.surface.depth(x, y) *= 2.0f;
-        for (auto& plane : frame.indirect) plane(x, y) = x < 32 ? 1.0f : 5.0f;
+        for (auto& plane : frame.lights[0].radiance) plane(x, y) = x < 32 ? 1.0f : 5.0f;
       }
     }
-    frame.indirect[0](10, 10) = 26.0f;
+    frame.lights[0].radiance[0](10, 10) = 26.0f;
   };
   AnalyticSource source(options);
   Hems2010 hems({options.extent, 1}, {.radius = 2});
@@ -88,8 +88,9 @@ TEST(Hems2010, LeavesOutWhatIsNotFinite) {
   clean.slide = {0.5f, 0.5f};
   AnalyticOptions broken = clean;
   broken.edit = [](Frame& frame) {
-    if (frame.index == 0) frame.indirect[1](30, 20) = kNan;
-    if (frame.index == 3) frame.indirect[2](40, 10) = std::numeric_limits<float>::infinity();
+    if (frame.index == 0) frame.lights[0].radiance[1](30, 20) = kNan;
+    if (frame.index == 3)
+      frame.lights[0].radiance[2](40, 10) = std::numeric_limits<float>::infinity();
   };
   for (const int radius : {0, 2}) {
     AnalyticSource source(broken), untouched(clean);
@@ -122,7 +123,7 @@ TEST(HemsOptions, RefusesWhatIsOutOfRange) {
 TEST(Hems2010, KeepsConstantLightAsItIs) {
   AnalyticOptions options{.frames = 10, .noise = 0.0f};
   options.edit = [](Frame& frame) {
-    for (auto& plane : frame.indirect) plane.fill(0.75f);
+    for (auto& plane : frame.lights[0].radiance) plane.fill(0.75f);
   };
   options.slide = {0.5f, 0.25f};
   const Planes<3> out = last_picture("hems2010", options);

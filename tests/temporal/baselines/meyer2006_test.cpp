@@ -31,7 +31,8 @@ TEST(TrackPca, IsThatOfTheWholeMatrixWhereNothingIsMissing) {
   for (Eigen::Index t = 0; t < 10; ++t) {
     for (Eigen::Index i = 0; i < all.rows(); ++i) {
       const int pixel = static_cast<int>(i / 3);
-      const auto& u = frames[static_cast<std::size_t>(t)].indirect[static_cast<std::size_t>(i % 3)];
+      const auto& u =
+          frames[static_cast<std::size_t>(t)].lights[0].radiance[static_cast<std::size_t>(i % 3)];
       all(i, t) = static_cast<double>(u(pixel % 24, pixel / 24));
     }
   }
@@ -55,7 +56,7 @@ TEST(TrackPca, IsNotLedByOutliersWherePointsAreEqual) {
   AnalyticOptions options{.extent = {24, 16}, .frames = 8, .noise = 0.0f};
   options.gain = [](int frame) { return frame % 2 == 0 ? 1.0f : 2.0f; };
   std::vector<Frame> frames = all_frames(options);
-  for (auto& plane : frames[3].indirect) plane(7, 7) = 1000.0f;
+  for (auto& plane : frames[3].lights[0].radiance) plane(7, 7) = 1000.0f;
   const PointTracks tracks = follow(frames);
   const auto ratio = [&](bool equal) {
     const TrackPca pca(tracks, {.bases = 1, .equal_points = equal});
@@ -139,8 +140,9 @@ TEST(Meyer2006, LeavesOutWhatIsNotFinite) {
   AnalyticOptions options{.frames = 8, .noise = 0.0f};
   options.slide = {0.5f, 0.5f};
   options.edit = [](Frame& frame) {
-    if (frame.index == 0) frame.indirect[1](30, 20) = kNan;
-    if (frame.index == 3) frame.indirect[2](40, 10) = std::numeric_limits<float>::infinity();
+    if (frame.index == 0) frame.lights[0].radiance[1](30, 20) = kNan;
+    if (frame.index == 3)
+      frame.lights[0].radiance[2](40, 10) = std::numeric_limits<float>::infinity();
   };
   AnalyticSource source(options);
   Meyer2006 meyer({options.extent, 3});
@@ -152,7 +154,7 @@ TEST(Meyer2006, LeavesOutWhatIsNotFinite) {
   }
   // A pixel that is never finite is 0, and nobody else is.
   AnalyticOptions never{.frames = 3, .noise = 0.0f};
-  never.edit = [](Frame& frame) { frame.indirect[0](5, 5) = kNan; };
+  never.edit = [](Frame& frame) { frame.lights[0].radiance[0](5, 5) = kNan; };
   AnalyticSource dark(never);
   Meyer2006 other({never.extent, 3});
   const Planes<3>* out = other.step(dark);
@@ -164,7 +166,7 @@ TEST(Meyer2006, LeavesOutWhatIsNotFinite) {
 TEST(Meyer2006, KeepsConstantLightAsItIs) {
   AnalyticOptions options{.frames = 10, .noise = 0.0f};
   options.edit = [](Frame& frame) {
-    for (auto& plane : frame.indirect) plane.fill(0.75f);
+    for (auto& plane : frame.lights[0].radiance) plane.fill(0.75f);
   };
   options.slide = {0.5f, 0.25f};
   const Planes<3> out = last_picture("meyer2006", options);

@@ -63,7 +63,8 @@ TEST(PointTracks, KeepOnePointForEachPixelOfAStillScene) {
     for (const TrackSample& sample : tracks.samples(t)) {
       const glm::ivec2 p = sample.corner;
       EXPECT_EQ(sample.weight[0], 1.0f);
-      EXPECT_EQ(sample.light.y, frames[static_cast<std::size_t>(t)].indirect[1](p.x, p.y));
+      EXPECT_EQ(sample.light.y,
+                frames[static_cast<std::size_t>(t)].lights[0].radiance[1](p.x, p.y));
       EXPECT_EQ(sample.track, static_cast<std::uint32_t>(p.y * 16 + p.x - 4));
     }
   }
@@ -111,7 +112,7 @@ TEST(PointTracks, StayOnTheirPointsUnderMotion) {
 
 TEST(PointTracks, MarksLightThatIsNotFinite) {
   std::vector<Frame> frames = all_frames({.extent = {8, 5}, .frames = 2});
-  frames[1].indirect[2](3, 2) = std::numeric_limits<float>::quiet_NaN();
+  frames[1].lights[0].radiance[2](3, 2) = std::numeric_limits<float>::quiet_NaN();
   const PointTracks tracks = follow(frames);
   EXPECT_FALSE(tracks.samples(1)[2 * 8 + 3].is_usable);
   EXPECT_EQ(tracks.samples(1)[2 * 8 + 3].light, glm::vec3(0.0f));

@@ -51,7 +51,7 @@ TEST(RunningMean, FollowsSurfacesUnderAMovingCamera) {
 TEST(RunningMean, KeepsConstantLightExactlyWhereItIs) {
   AnalyticOptions options{.frames = 40, .noise = 0.0f};
   options.edit = [](Frame& frame) {
-    for (auto& plane : frame.indirect) plane.fill(0.75f);
+    for (auto& plane : frame.lights[0].radiance) plane.fill(0.75f);
   };
   options.slide = {0.5f, 0.25f};
   const Planes<3> out = last_picture("mean", options);
@@ -65,8 +65,9 @@ TEST(RunningMean, LeavesOutWhatIsNotFinite) {
   options.slide = {0.5f, 0.5f};
   AnalyticOptions broken = options;
   broken.edit = [](Frame& frame) {
-    if (frame.index == 0) frame.indirect[1](30, 20) = kNan;
-    if (frame.index == 3) frame.indirect[2](40, 10) = -std::numeric_limits<float>::infinity();
+    if (frame.index == 0) frame.lights[0].radiance[1](30, 20) = kNan;
+    if (frame.index == 3)
+      frame.lights[0].radiance[2](40, 10) = -std::numeric_limits<float>::infinity();
   };
   AnalyticSource source(broken), untouched(options);
   RunningMean mean({broken.extent, 3}), other({options.extent, 3});

@@ -20,7 +20,7 @@ void fill_with_noise(Frame& frame) {
       for (int x = 0; x < frame.extent().width; ++x) {
         if (frame.surface.id(x, y) == 0) continue;
         const std::uint32_t seed = hash_key(static_cast<std::uint32_t>(frame.index), c);
-        frame.indirect[c](x, y) = PixelRandom(seed, x, y).between(0.5f, 1.5f);
+        frame.lights[0].radiance[c](x, y) = PixelRandom(seed, x, y).between(0.5f, 1.5f);
       }
     }
   }
@@ -44,7 +44,7 @@ struct Scene {
       : frame(make_random_frame({.extent = extent, .disturbed = false, .non_finite = false}, 3)),
         image(extent),
         known(extent) {
-    copy_planes(frame.indirect, image.color);
+    copy_planes(frame.lights[0].radiance, image.color);
     image.variance = random_plane(extent, 5, 0.0f, 0.4f);
     for (int y = 0; y < extent.height; ++y) {
       for (int x = 0; x < extent.width; ++x) {
@@ -79,7 +79,7 @@ TEST(SvgfPass, AgreesWithItsTwinOnEveryInstructionSet) {
       for_each_target([&] {
         SvgfImage out(extent);
         for_each_tile(stage_tiles(extent),
-                      [&](const Tile& tile) { svgf_pass_tile(pass, scene.image, tile, out); });
+                      [&](const Rect& tile) { svgf_pass_tile(pass, scene.image, tile, out); });
         EXPECT_TRUE(planes_near(out.color, wanted.color, {2e-4, 1e-5})) << step;
         EXPECT_TRUE(planes_near(out.variance, wanted.variance, {4e-4, 1e-6})) << step;
       });
@@ -103,7 +103,7 @@ TEST(SvgfGeometryWeight, IsThatOfThePass) {
     known(p.x, p.y) = known(q.x, q.y) = 1.0f;
     for (auto& plane : image.color) plane.fill(0.0f);
     for (auto& plane : image.color) plane(q.x, q.y) = 1.0f;
-    for_each_tile(stage_tiles({40, 24}), [&](const Tile& tile) {
+    for_each_tile(stage_tiles({40, 24}), [&](const Rect& tile) {
       svgf_pass_tile({scene.frame, blind, 1, known}, image, tile, out);
     });
     const float weight = svgf_geometry_weight(scene.frame, weights, p, q);
@@ -174,7 +174,7 @@ TEST(Svgf, TakesAFifthOfEachFrameOnceOld) {
 TEST(Svgf, KeepsConstantLightAsItIs) {
   AnalyticOptions options{.frames = 10, .noise = 0.0f};
   options.edit = [](Frame& frame) {
-    for (auto& plane : frame.indirect) plane.fill(0.75f);
+    for (auto& plane : frame.lights[0].radiance) plane.fill(0.75f);
   };
   options.slide = {0.5f, 0.25f};
   const Planes<3> out = last_picture("svgf", options);
@@ -188,8 +188,9 @@ TEST(Svgf, LeavesOutWhatIsNotFinite) {
   clean.slide = {0.5f, 0.5f};
   AnalyticOptions broken = clean;
   broken.edit = [](Frame& frame) {
-    if (frame.index == 0) frame.indirect[1](30, 20) = kNan;
-    if (frame.index == 3) frame.indirect[2](40, 10) = std::numeric_limits<float>::infinity();
+    if (frame.index == 0) frame.lights[0].radiance[1](30, 20) = kNan;
+    if (frame.index == 3)
+      frame.lights[0].radiance[2](40, 10) = std::numeric_limits<float>::infinity();
   };
   AnalyticSource source(broken), untouched(clean);
   Svgf svgf({broken.extent, 1}), other({clean.extent, 1});

@@ -31,7 +31,7 @@ struct Scene {
           for (int k = 0; k < field.bases(); ++k) {
             u += delta[static_cast<std::size_t>(k)] * field.value(x, y, c, k);
           }
-          frame.indirect[static_cast<std::size_t>(c)](x, y) = u;
+          frame.lights[0].radiance[static_cast<std::size_t>(c)](x, y) = u;
         }
       }
     }
@@ -141,7 +141,8 @@ TEST(SolveCoefficients, RecoversTheGainOfALightThatAllButWentOut) {
           const float noise = PixelRandom(7, x, y).between(0.2f, 1.8f);
           for (int c = 0; c < 3; ++c) {
             const float light = scene.field.value(x, y, c, 0);
-            scene.frame.indirect[static_cast<std::size_t>(c)](x, y) = gain * noise * light;
+            scene.frame.lights[0].radiance[static_cast<std::size_t>(c)](x, y) =
+                gain * noise * light;
           }
         }
       }
@@ -275,7 +276,7 @@ TEST(CoefficientField, HasNoStepWhereTilesMeet) {
   const auto value = [&](int x, int y) {
     CoefficientRows out;
     const int first = x / kCoefficientTile * kCoefficientTile;
-    field.rows({first, y, x + 1, y + 1, 0}, 1, out);
+    field.rows({first, y, x + 1, y + 1}, 1, out);
     return out[0][x - first];
   };
   // Bilinear between centers 32 pixels and 2 apart: at most 2/32 a pixel along a row, and along a

@@ -28,7 +28,7 @@ struct Result {
     variance.fill(0.5f);
   }
   void run(const BasisField& bases, const CoefficientField& coefficients, const Frame& frame) {
-    copy_planes(frame.indirect, residual);
+    copy_planes(frame.lights[0].radiance, residual);
     for (int i = 0; i < coefficients.grid().count(); ++i) {
       predict_tile(bases, coefficients, coefficients.grid().tile(i),
                    {residual, innovation, expected, variance});
@@ -68,7 +68,8 @@ TEST(Predict, AgreesWithTheTwinOnEveryTarget) {
         result.run(field, coefficients, frame);
         for (int y = 0; y < extent.height; ++y) {
           for (int x = 0; x < extent.width; ++x) {
-            const auto twin = reference::predict(field, coefficients, frame.indirect, x, y);
+            const auto twin =
+                reference::predict(field, coefficients, frame.lights[0].radiance, x, y);
             expect_close(result, twin, x, y);
           }
         }
@@ -86,7 +87,7 @@ TEST(Predict, WithoutHistoryTheLightIsLeftAndNothingConfirmed) {
   result.run(BasisField(extent, 3), CoefficientField(extent, 3), frame);
   for (int y = 0; y < 3; ++y) {
     for (int x = 0; x < 5; ++x) {
-      const float light = frame.indirect[1](x, y);
+      const float light = frame.lights[0].radiance[1](x, y);
       EXPECT_TRUE(result.residual[1](x, y) == light || std::isnan(light));
       EXPECT_EQ(result.expected(x, y), 0.0f);
       EXPECT_TRUE(std::isnan(result.innovation(x, y)));

@@ -72,9 +72,9 @@ TEST(TileSums, AddToWhatIsThere) {
   const Plane<float> variance = random_plane(extent, 5, 0.05f, 0.6f);
   const BasisField field = random_bases(extent, 2, 8);
   TileSums once, twice;
-  accumulate_tile({field, frame, variance}, {0, 0, 32, 32, 0}, once);
-  accumulate_tile({field, frame, variance}, {0, 0, 32, 16, 0}, twice);
-  accumulate_tile({field, frame, variance}, {0, 16, 32, 32, 0}, twice);
+  accumulate_tile({field, frame, variance}, {0, 0, 32, 32}, once);
+  accumulate_tile({field, frame, variance}, {0, 0, 32, 16}, twice);
+  accumulate_tile({field, frame, variance}, {0, 16, 32, 32}, twice);
   for (std::size_t i = 0; i < once.gram.size(); ++i) {
     EXPECT_DOUBLE_EQ(twice.gram[i], once.gram[i]);
   }
@@ -96,7 +96,7 @@ TEST(TileSums, LeaveOutWhatCannotBeUsed) {
   fill_bases(field, 1.0f);
   const auto pixels = [&] {
     TileSums sums;
-    accumulate_tile({field, frame, variance}, {0, 0, 5, 3, 0}, sums);
+    accumulate_tile({field, frame, variance}, {0, 0, 5, 3}, sums);
     EXPECT_TRUE(std::isfinite(sums.gram[0]));
     EXPECT_TRUE(std::isfinite(sums.innovation[0]));
     EXPECT_TRUE(std::isfinite(sums.spread[0]));
@@ -108,14 +108,14 @@ TEST(TileSums, LeaveOutWhatCannotBeUsed) {
     EXPECT_EQ(pixels(), 14.0);
     field.age(4, 2) = 1.0f;
     for (std::size_t c = 0; c < 3; ++c) {
-      const float kept = frame.indirect[c](2, 1);
+      const float kept = frame.lights[0].radiance[c](2, 1);
       for (const float bad :
            {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
             -std::numeric_limits<float>::infinity()}) {
-        frame.indirect[c](2, 1) = bad;
+        frame.lights[0].radiance[c](2, 1) = bad;
         EXPECT_EQ(pixels(), 14.0);
       }
-      frame.indirect[c](2, 1) = kept;
+      frame.lights[0].radiance[c](2, 1) = kept;
     }
   });
 }
@@ -129,12 +129,13 @@ TEST(TileSums, OfAGainKnowIt) {
   for (int y = 0; y < 32; ++y) {
     for (int x = 0; x < 32; ++x) {
       for (int c = 0; c < 3; ++c) {
-        frame.indirect[static_cast<std::size_t>(c)](x, y) = 1.5f * field.value(x, y, c, 0);
+        frame.lights[0].radiance[static_cast<std::size_t>(c)](x, y) =
+            1.5f * field.value(x, y, c, 0);
       }
     }
   }
   TileSums sums;
-  accumulate_tile({field, frame, variance}, {0, 0, 32, 32, 0}, sums);
+  accumulate_tile({field, frame, variance}, {0, 0, 32, 32}, sums);
   EXPECT_GT(sums.gram[0], 0.0);
   EXPECT_NEAR(sums.innovation[0], 0.5 * sums.gram[0], 1e-5 * sums.gram[0]);
 }
@@ -148,15 +149,15 @@ TEST(TileSums, HoldBackALineOfOutliersAndFollowATileOfThem) {
   Plane<float> variance(extent);
   variance.fill(0.01f);
   const auto gain = [&](int rows) {
-    for (auto& plane : frame.indirect) {
+    for (auto& plane : frame.lights[0].radiance) {
       plane.fill(1.0f);
       for (int y = 0; y < rows; ++y) std::fill(plane.row(y), plane.row(y) + 32, -5.0f);
     }
     TileSums sums;
     // In two parts: which pixels are few is decided for the whole tile.
-    accumulate_tile({field, frame, variance}, {0, 0, 32, 1, 0}, sums);
-    accumulate_tile({field, frame, variance}, {0, 1, 32, 32, 0}, sums);
-    admit_outliers({field, frame, variance}, {0, 0, 32, 32, 0}, sums);
+    accumulate_tile({field, frame, variance}, {0, 0, 32, 1}, sums);
+    accumulate_tile({field, frame, variance}, {0, 1, 32, 32}, sums);
+    admit_outliers({field, frame, variance}, {0, 0, 32, 32}, sums);
     return 1.0 + sums.innovation[0] / sums.gram[0];
   };
   for_each_target([&] {

@@ -57,7 +57,7 @@ struct Scene {
   }
   // Leaves the corrected prediction.
   double run(Correction& correction) {
-    const Tile all{0, 0, innovation.width(), innovation.height(), 0};
+    const Rect all{0, 0, innovation.width(), innovation.height()};
     correction.place(guides.surface, all);
     correction.count(in(), all);
     const double share = correction.process(in(), innovation);
@@ -198,12 +198,12 @@ TEST(Correction, BlocksThatChangeAreCountedAgain) {
     changed.set_residual(p.x, p.y, 1e6f);
     wanted.set_residual(p.x, p.y, std::nanf(""));
   }
-  again.count(changed.in(), {0, 0, extent.width, extent.height, 0});
+  again.count(changed.in(), {0, 0, extent.width, extent.height});
   for (const glm::ivec2 p : {glm::ivec2{5, 9}, {6, 9}, {70, 40}, {79, 47}, {190, 106}}) {
     changed.set_residual(p.x, p.y, std::nanf(""));
     const int x = p.x / 8 * 8, y = p.y / 8 * 8;
     again.count(changed.in(),
-                {x, y, std::min(x + 8, extent.width), std::min(y + 8, extent.height), 0});
+                {x, y, std::min(x + 8, extent.width), std::min(y + 8, extent.height)});
   }
   EXPECT_EQ(again.process(changed.in(), changed.innovation), wanted.run(once));
   EXPECT_TRUE(planes_equal(changed.innovation, wanted.innovation));

@@ -151,7 +151,7 @@ TEST(ResidualCells, BlocksAreSignificantWhereTheirMeanIsBeyondItsNoise) {
   }
   const auto row = [&](int y) {
     std::vector<ResidualBlock> blocks(77);
-    test_blocks(scene.in(), {0, y, extent.width, std::min(y + 8, extent.height), 0}, blocks);
+    test_blocks(scene.in(), {0, y, extent.width, std::min(y + 8, extent.height)}, blocks);
     return blocks;
   };
   for_each_target([&] {

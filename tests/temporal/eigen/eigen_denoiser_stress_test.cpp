@@ -52,7 +52,7 @@ float largest_ratio(const Planes<3>& a, const Planes<3>& b, glm::ivec2 p, int ra
 AnalyticOptions with_value(float value, int frame) {
   AnalyticOptions options{.extent = {191, 107}, .frames = 12};
   options.edit = [value, frame](Frame& f) {
-    if (f.index == frame) f.indirect[1](20, 20) = value;
+    if (f.index == frame) f.lights[0].radiance[1](20, 20) = value;
   };
   return options;
 }
@@ -120,7 +120,7 @@ TEST(EigenDenoiserStress, FramesWithoutAnyUsablePixelAreSurvived) {
   const FloatTrapsOff nan_is_meant;
   AnalyticOptions options{.extent = {65, 17}, .frames = 12};
   options.edit = [](Frame& frame) {
-    if (frame.index == 0 || frame.index == 6) frame.indirect[2].fill(kNan);
+    if (frame.index == 0 || frame.index == 6) frame.lights[0].radiance[2].fill(kNan);
   };
   const Pictures hit = run(options, {});
   EXPECT_EQ(hit.reports[0].non_finite_pixels, 65 * 17);

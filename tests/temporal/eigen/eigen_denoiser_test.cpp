@@ -272,7 +272,7 @@ TEST(EigenDenoiser, SkyIsZeroAlsoWhereASurfaceWas) {
         frame.surface.id(x, y) = 0;
         frame.surface.depth(x, y) = frame.previous_depth(x, y) = kInf;
         for (std::size_t c = 0; c < 3; ++c) {
-          frame.surface.normal[c](x, y) = frame.indirect[c](x, y) = 0.0f;
+          frame.surface.normal[c](x, y) = frame.lights[0].radiance[c](x, y) = 0.0f;
         }
       }
     }

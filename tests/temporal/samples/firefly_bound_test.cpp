@@ -41,7 +41,7 @@ struct Wall {
   std::int64_t process() {
     const FireflyInputs in{expected, age, samples, variance};
     const FireflyOutputs out{residual, innovation};
-    bound.count(in, out, {0, 0, kExtent.width, kExtent.height, 0});
+    bound.count(in, out, {0, 0, kExtent.width, kExtent.height});
     return bound.bound(in, out, [&](const Tile& block) { changed.push_back(block.index); });
   }
   std::vector<int> changed;

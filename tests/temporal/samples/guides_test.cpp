@@ -40,7 +40,7 @@ TEST(Guides, CountAsTheSlowTestDoes) {
           expected.surface += surface.id(x, y) != 0 ? 1 : 0;
           expected.usable += has_usable_guides(surface, x, y) ? 1 : 0;
         }
-        const GuideCounts found = count_guides(surface, {0, y, extent.width, y + 1, 0});
+        const GuideCounts found = count_guides(surface, {0, y, extent.width, y + 1});
         ASSERT_EQ(found.surface, expected.surface) << y;
         ASSERT_EQ(found.usable, expected.usable) << y;
       }

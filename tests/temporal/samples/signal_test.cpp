@@ -38,7 +38,7 @@ struct Scene {
   }
   SignalCounts merge(bool resampled) {
     SignalCounts counts;
-    for_each([&](const Tile& tile) {
+    for_each([&](const Rect& tile) {
       const SignalCounts found = merge_samples(
           {frame, resampled ? &extra : nullptr, resampled ? &extra_mean : nullptr, age}, tile,
           {light, samples});
@@ -67,7 +67,7 @@ void expect_merged(const Scene& scene, bool resampled, const SignalCounts& count
       const double extra = resampled ? scene.extra(x, y) : 0.0;
       double mean[3], size = 0.0;
       for (std::size_t c = 0; c < 3; ++c) {
-        mean[c] = 3.0 * scene.frame.indirect[c](x, y);
+        mean[c] = 3.0 * scene.frame.lights[0].radiance[c](x, y);
         if (extra > 0.0) mean[c] += extra * scene.extra_mean[c](x, y);
         mean[c] /= 3.0 + extra;
         size += std::abs(mean[c]);
@@ -104,9 +104,9 @@ TEST(MergeSamples, IsTheMeanOfAllSamplesOnEveryTarget) {
 
 TEST(MergeSamples, RefusesLightBeyondWhatSquaresHold) {
   Scene scene({16, 16});
-  for (auto& plane : scene.frame.indirect) plane.fill(1.0f);
+  for (auto& plane : scene.frame.lights[0].radiance) plane.fill(1.0f);
   scene.frame.surface.id.fill(1);
-  scene.frame.indirect[1](3, 4) = 1e19f;
+  scene.frame.lights[0].radiance[1](3, 4) = 1e19f;
   EXPECT_EQ(scene.merge(false).non_finite, 1);
   EXPECT_EQ(scene.samples(3, 4), 0.0f);
 }
@@ -117,7 +117,7 @@ double variance_around(const Scene& scene, int px, int py) {
   for (int y = std::max(py - 3, 0); y <= std::min(py + 3, scene.samples.height() - 1); ++y) {
     for (int x = std::max(px - 3, 0); x <= std::min(px + 3, scene.samples.width() - 1); ++x) {
       if (!(scene.samples(x, y) > 0.0f)) continue;
-      const auto& u = scene.frame.indirect;
+      const auto& u = scene.frame.lights[0].radiance;
       const double most = scene.brightness(x / 8, y / 8);
       const double l =
           std::clamp(0.2126 * u[0](x, y) + 0.7152 * u[1](x, y) + 0.0722 * u[2](x, y), -most, most);
@@ -135,7 +135,7 @@ TEST(FreshVariance, IsThatOfTheSurroundingsAtNewPixelsAloneOnEveryTarget) {
       Scene scene(extent);
       (void)scene.merge(true);
       const Plane<float> before = scene.variance.clone();
-      scene.for_each([&](const Tile& tile) {
+      scene.for_each([&](const Rect& tile) {
         fresh_variance({scene.frame, scene.samples, scene.age, scene.brightness}, tile,
                        scene.variance);
       });
@@ -155,7 +155,7 @@ TEST(EstimateVariance, FallsWithAgeAndMarksTheYoung) {
   Plane<float> estimate({67, 33});
   Plane<std::uint8_t> young({67, 33});
   for_each_target([&] {
-    scene.for_each([&](const Tile& tile) {
+    scene.for_each([&](const Rect& tile) {
       estimate_variance({scene.frame.surface.id, scene.age, scene.variance, 2.0f}, tile,
                         {estimate, young});
     });

@@ -1,0 +1,51 @@
+#include "frame/frame.h"
+
+namespace eigenlight {
+namespace {
+
+template <typename T>
+void copy_plane(const Plane<T>& from, Plane<T>& to) {
+  if (from.empty()) {
+    to = {};
+    return;
+  }
+  ensure_extent(to, from.extent(), from.channels());
+  to.copy_from(from);
+}
+
+template <std::size_t N>
+void copy_plane(const Planes<N>& from, Planes<N>& to) {
+  for (std::size_t c = 0; c < N; ++c) copy_plane(from[c], to[c]);
+}
+
+}  // namespace
+
+void copy_frame(const Frame& from, Frame& to) {
+  // Names every member, so that one that is added later cannot be forgotten here.
+  const auto& [number, previous, still, samples, camera, surface, lights, motion, previous_depth,
+               rays, non_finite] = static_cast<const FrameInput&>(from);
+  const auto& [depth, normal, albedo, id] = surface;
+  to.index = number;
+  to.previous_index = previous;
+  to.is_static = still;
+  to.spp = samples;
+  to.camera = camera;
+  copy_plane(depth, to.surface.depth);
+  copy_plane(normal, to.surface.normal);
+  copy_plane(albedo, to.surface.albedo);
+  copy_plane(id, to.surface.id);
+  to.lights.resize(lights.size());
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    copy_plane(lights[i].radiance, to.lights[i].radiance);
+    copy_plane(lights[i].color, to.lights[i].color);
+  }
+  copy_plane(motion, to.motion);
+  copy_plane(previous_depth, to.previous_depth);
+  to.rays = rays;
+  to.non_finite_samples = non_finite;
+  copy_plane(from.direct, to.direct);
+  copy_plane(from.emission, to.emission);
+  copy_plane(from.position, to.position);
+}
+
+}  // namespace eigenlight
