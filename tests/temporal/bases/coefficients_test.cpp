@@ -258,7 +258,7 @@ TEST(CoefficientField, InterpolatesAsTheTwinForAllExtents) {
     for (int i = 0; i < field.grid().count(); ++i) {
       const Tile tile = field.grid().tile(i);
       for (int y = tile.y0; y < tile.y1; ++y) {
-        field.rows({tile.x0, y, tile.x1, y + 1, i}, 2, out);
+        field.rows({tile.x0, y, tile.x1, y + 1}, 2, out);
         for (int k = 0; k < 2; ++k) {
           for (int x = tile.x0; x < tile.x1; ++x) {
             ASSERT_NEAR(out[k][x - tile.x0], reference::coefficient_at(field, x, y, k), 2e-6)
