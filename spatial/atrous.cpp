@@ -9,10 +9,6 @@
 namespace eigenlight {
 namespace {
 
-// Of plane_distance: the most that pixels of one plane may lie off it. A weight of exp(-2e-3) is as
-// good as 1 to a denoiser, and rounding of depths is 1e-7 of them.
-constexpr float kPlanarTolerance = 1e-3f;
-
 const AtrousOptions& valid(const AtrousOptions& options) {
   options.validate();
   return options;
@@ -64,7 +60,7 @@ void AtrousOptions::validate() const {
 Atrous::Atrous(Extent extent, const AtrousOptions& options)
     : options_(valid(options)),
       grid_(stage_tiles(extent)),
-      planar_(extent, kPlanarTolerance * options.plane_distance),
+      planar_(extent, options.planar_tolerance()),
       scratch_color_(make_planes<3>(extent)),
       scratch_variance_(extent),
       noisy_(static_cast<std::size_t>(grid_.count())),
@@ -87,12 +83,11 @@ void Atrous::find_planes(const FrameInput& guides, std::span<const std::uint8_t>
   }
 }
 
-void Atrous::run_pass(const FrameInput& guides, int pass, std::span<const std::uint8_t> wanted,
-                      Planes<3>& color, Plane<float>& variance, const Plane<float>* earlier) {
-  const AtrousPass work{guides,   options_, planar_,        1 << pass,        color,
-                        variance, earlier,  scratch_color_, scratch_variance_};
+void Atrous::run_pass(const Pass& in, int pass, Planes<3>& color, Plane<float>& variance) {
+  const AtrousPass work{in.guides, options_,   in.planes,      1 << pass,        color,
+                        variance,  in.earlier, scratch_color_, scratch_variance_};
   const auto is_wanted = [&](const Tile& tile) {
-    return wanted[static_cast<std::size_t>(tile.index)] != 0;
+    return in.wanted[static_cast<std::size_t>(tile.index)] != 0;
   };
   for_each_strip(grid_, [&](const Strip& strip) {
     // Neighbors that are wanted alike are filtered as one.
@@ -115,9 +110,10 @@ void Atrous::run_pass(const FrameInput& guides, int pass, std::span<const std::u
   std::swap(variance, scratch_variance_);
 }
 
-std::int64_t Atrous::process(const FrameInput& guides, float quiet, Planes<3>& color,
-                             Plane<float>& variance, const Plane<float>* earlier) {
-  check(guides, color, variance, earlier);
+std::span<const std::uint8_t> Atrous::find_noisy(const FrameInput& guides, float quiet,
+                                                 const Planes<3>& color,
+                                                 const Plane<float>& variance) {
+  check(guides, color, variance, nullptr);
   for_each_tile(grid_, [&](const Tile& tile) {
     const auto index = static_cast<std::size_t>(tile.index);
     const std::int64_t surface = surface_pixels(guides, tile);
@@ -125,16 +121,29 @@ std::int64_t Atrous::process(const FrameInput& guides, float quiet, Planes<3>& c
     noisy_[index] = noisy ? 1 : 0;
     skipped_[index] = noisy ? 0 : surface;
   });
-  find_planes(guides, noisy_);
-  run_pass(guides, 0, noisy_, color, variance, earlier);
+  return noisy_;
+}
+
+std::int64_t Atrous::filter_noisy(const FrameInput& guides, const PlanarBlocks& planes, float quiet,
+                                  Planes<3>& color, Plane<float>& variance,
+                                  const Plane<float>* earlier) {
+  check(guides, color, variance, earlier);
+  const Pass work{guides, planes, noisy_, earlier};
+  run_pass(work, 0, color, variance);
   for (int pass = 1; pass < options_.passes; ++pass) {
     for_each_tile(grid_, [&](const Tile& tile) {
       std::uint8_t& noisy = noisy_[static_cast<std::size_t>(tile.index)];
       if (noisy != 0 && is_quiet(color, variance, quiet, tile)) noisy = 0;
     });
-    run_pass(guides, pass, noisy_, color, variance, earlier);
+    run_pass(work, pass, color, variance);
   }
   return std::accumulate(skipped_.begin(), skipped_.end(), std::int64_t{0});
+}
+
+std::int64_t Atrous::process(const FrameInput& guides, float quiet, Planes<3>& color,
+                             Plane<float>& variance, const Plane<float>* earlier) {
+  find_planes(guides, find_noisy(guides, quiet, color, variance));
+  return filter_noisy(guides, planar_, quiet, color, variance, earlier);
 }
 
 void Atrous::process(const FrameInput& guides, std::span<const std::uint8_t> wanted,
@@ -144,7 +153,7 @@ void Atrous::process(const FrameInput& guides, std::span<const std::uint8_t> wan
            wanted.size(), grid_.count());
   find_planes(guides, wanted);
   for (int pass = 0; pass < options_.passes; ++pass) {
-    run_pass(guides, pass, wanted, color, variance, nullptr);
+    run_pass({guides, planar_, wanted, nullptr}, pass, color, variance);
   }
 }
 

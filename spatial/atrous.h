@@ -27,6 +27,9 @@ struct AtrousOptions {
 
   void validate() const;  ///< throws std::invalid_argument naming the field
   [[nodiscard]] bool looks_at_light() const { return !std::isinf(luminance_sigmas); }
+  /// For PlanarBlocks, of the depth: a thousandth of plane_distance. A weight of exp(-2e-3) is as
+  /// good as 1 to a denoiser, and rounding of depths is 1e-7 of them.
+  [[nodiscard]] float planar_tolerance() const { return 1e-3f * plane_distance; }
 };
 
 /// Dammertz et al. 2010 with the variance steering of Schied et al. 2017 (SVGF, section 4.4):
@@ -43,7 +46,7 @@ struct AtrousOptions {
 /// surface neither give nor take; they keep their value. Nor do pixels whose normals have a product
 /// above kLargestCosine, or that have no depth, take from each other.
 ///
-/// In blocks whose taps all lie in one plane (planar_blocks.h, with a thousandth of plane_distance)
+/// In blocks whose taps all lie in one plane (planar_blocks.h)
 /// weights of geometry are taken to be 1 and not calculated: none is off by more than 0.5 %.
 ///
 /// `color` and `variance` are filtered in place; the scratch planes have the same extent. Tiles in
@@ -53,8 +56,18 @@ class Atrous {
  public:
   Atrous(Extent extent, const AtrousOptions& options);
 
-  /// Returns the number of surface pixels that were skipped in the first pass. `earlier`: g, or
-  /// null.
+  /// The tiles of stage_tiles() that are not quiet, 1 each; they are kept for filter_noisy().
+  [[nodiscard]] std::span<const std::uint8_t> find_noisy(const FrameInput& guides, float quiet,
+                                                         const Planes<3>& color,
+                                                         const Plane<float>& variance);
+  /// Filters the tiles that find_noisy() found. `planes` are those of `guides`: several images of
+  /// one frame share them. Returns the number of surface pixels that the first pass skips.
+  /// `earlier`: g, or null.
+  std::int64_t filter_noisy(const FrameInput& guides, const PlanarBlocks& planes, float quiet,
+                            Planes<3>& color, Plane<float>& variance,
+                            const Plane<float>* earlier = nullptr);
+
+  /// find_noisy() and filter_noisy() with planes of its own.
   std::int64_t process(const FrameInput& guides, float quiet, Planes<3>& color,
                        Plane<float>& variance, const Plane<float>* earlier = nullptr);
 
@@ -70,8 +83,13 @@ class Atrous {
   void check(const FrameInput& guides, const Planes<3>& color, const Plane<float>& variance,
              const Plane<float>* earlier) const;
   void find_planes(const FrameInput& guides, std::span<const std::uint8_t> wanted);
-  void run_pass(const FrameInput& guides, int pass, std::span<const std::uint8_t> wanted,
-                Planes<3>& color, Plane<float>& variance, const Plane<float>* earlier);
+  struct Pass {
+    const FrameInput& guides;
+    const PlanarBlocks& planes;
+    std::span<const std::uint8_t> wanted;  // tiles; the others are copied
+    const Plane<float>* earlier;
+  };
+  void run_pass(const Pass& in, int pass, Planes<3>& color, Plane<float>& variance);
 
   AtrousOptions options_;
   TileGrid grid_;

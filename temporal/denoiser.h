@@ -14,14 +14,34 @@
 
 namespace eigenlight {
 
-/// The steps of the frame loop, in their order. A method reports those that it has.
-enum class Stage { kSource, kReproject, kBudget, kResample, kProject, kUpdate, kFilter, kCount };
+/// The steps of the frame loop, in their order (docs/method.md). A method reports those that it has.
+enum class Stage {
+  kSource,    ///< a frame is read
+  kWarp,      ///< history is brought to where its surfaces are now
+  kBudget,    ///< extra samples are planned
+  kResample,  ///< and drawn
+  kProject,   ///< coefficients of the bases
+  kPredict,   ///< the light that they foresee, and the residual
+  kBound,     ///< fireflies are scaled back
+  kCorrect,   ///< what neighbors agree on and no basis explains
+  kLearn,     ///< statistics of the coefficients
+  kUpdate,    ///< the innovation test, and bases take the frame in
+  kFilter,    ///< spatial filters
+  kCount
+};
 inline constexpr std::array<std::string_view, static_cast<std::size_t>(Stage::kCount)> kStageNames{
-    "source", "reproject", "budget", "resample", "project", "update", "filter"};
+    "source", "warp",    "budget", "resample", "project", "predict",
+    "bound",  "correct", "learn",  "update",   "filter"};
 
 struct StageTime {
   double wall_ms = 0.0;
   double cpu_ms = 0.0;  ///< of the whole process
+
+  StageTime& operator+=(const StageTime& other) {
+    wall_ms += other.wall_ms;
+    cpu_ms += other.cpu_ms;
+    return *this;
+  }
 };
 
 /// What happened in one frame; one line of frames.jsonl.
@@ -56,9 +76,10 @@ class Denoiser {
  public:
   virtual ~Denoiser() = default;
 
-  /// Pulls one frame from `source` and denoises it: indirect radiance over albedo, linear. Null at
-  /// the end of the sequence, else valid until the next call. Pixels without surface are 0.
-  /// Throws std::invalid_argument if the frame has another size than the denoiser.
+  /// Pulls one frame from `source` and denoises its layers of light. Returns the first: radiance
+  /// over its color, linear, 0 without surface; valid until the next call. Null at the end of the
+  /// sequence. Throws std::invalid_argument if the frame has another size or number of layers than
+  /// the denoiser.
   [[nodiscard]] virtual const Planes<3>* step(FrameSource& source) = 0;
 
   [[nodiscard]] virtual const Frame& frame() const = 0;         ///< the one that step() pulled last
@@ -76,7 +97,8 @@ class Denoiser {
 
 struct DenoiserOptions {
   Extent extent;
-  int bases = 3;  ///< [1, 8] K, for methods that have bases
+  int bases = 3;   ///< [1, 8] K, for methods that have bases
+  int layers = 1;  ///< [1, kMaxLights] layers of light in each frame, for `eigenlight`
   /// Parts of the method to turn off, by name, to see what each is worth.
   std::vector<std::string> without = {};
 };

@@ -69,7 +69,7 @@ StageTimes time_stages(const std::vector<Frame>& frames, int bases) {
     (void)ours->step(for_ours);
     if (i == 0) continue;
     const FrameReport& report = chen->report();
-    times.reproject += share * report[Stage::kReproject].cpu_ms;
+    times.reproject += share * report[Stage::kWarp].cpu_ms;
     times.ipca += share * (report[Stage::kUpdate].cpu_ms + report[Stage::kFilter].cpu_ms);
     times.reconstruct += share * report[Stage::kProject].cpu_ms;
     times.eigenlight += share * denoising_ms(ours->report());

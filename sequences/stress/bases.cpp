@@ -78,7 +78,7 @@ StressFinding check_orthogonality(Lab& lab) {
 // basis.
 double condition(const EigenState& state, const Frame& frame) {
   TileSums sums;
-  const SumInputs in{state.field, frame, state.variance, state.memory.active()};
+  const SumInputs in{state.field, frame.lights[0].radiance, state.variance, state.memory.active()};
   const Rect all{0, 0, kExtent.width, kExtent.height};
   accumulate_tile(in, all, sums);
   admit_outliers(in, all, sums);

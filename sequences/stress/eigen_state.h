@@ -19,6 +19,7 @@ struct EigenState {
     StateReader in({saved.bytes().data(), saved.bytes().size()});
     int bases = 0, used = 0;
     in.value("eigenlight", version);
+    in.value("layers", layers);
     surfaces.load(in);
     in.value("bases", bases);
     in.value("bases in use", used);
@@ -33,6 +34,7 @@ struct EigenState {
   void give(Denoiser& denoiser) const {
     StateWriter out;
     out.value("eigenlight", version);
+    out.value("layers", layers);
     surfaces.save(out);
     out.value("bases", memory.bases());
     out.value("bases in use", field.bases());
@@ -44,7 +46,7 @@ struct EigenState {
     denoiser.load(in);
   }
 
-  int version = 0;
+  int version = 0, layers = 1;
   SurfaceHistory surfaces;
   BasisField field;
   Plane<float> variance, shown;

@@ -19,7 +19,7 @@ const Planes<3>* BlendedHistory::step(FrameSource& source) {
   report_ = {};
   report_[Stage::kSource] = clock.lap();
   const BasisHistory::Warp warp = history_.warp(frame_);
-  report_[Stage::kReproject] = clock.lap();
+  report_[Stage::kWarp] = clock.lap();
   for_each_tile(tiles_, [&](const Tile& tile) { blend_tile(tile); });
   report_[Stage::kUpdate] = clock.lap();
   const Planes<3>& picture = finish();
@@ -29,7 +29,7 @@ const Planes<3>* BlendedHistory::step(FrameSource& source) {
   report_.frame = frame_.index;
   report_.cut = warp.cut;
   report_.skipped_warp = warp.skipped;
-  for (const SampleCounts& counts : counts_) counts.add_to(report_);
+  for (const PixelCounts& counts : counts_) counts.add_to(report_);
   report_.rays = frame_.rays;
   report_.non_finite_samples = frame_.non_finite_samples;
   return &picture;

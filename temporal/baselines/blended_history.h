@@ -6,7 +6,7 @@
 
 #include "frame/tiles.h"
 #include "temporal/baselines/basis_history.h"
-#include "temporal/samples/sample_counts.h"
+#include "temporal/samples/pixel_counts.h"
 
 namespace eigenlight {
 
@@ -55,19 +55,19 @@ class BlendedHistory : public Denoiser {
   FrameReport report_;
   BasisHistory history_;
   Plane<float> age_;
-  std::vector<SampleCounts> counts_;  // per tile
+  std::vector<PixelCounts> counts_;  // per tile
 };
 
 template <typename Blend>
 void BlendedHistory::for_each_sample(const Tile& tile, const Blend& blend) {
   const BasisField& field = history_.bases();
-  SampleCounts& counts = counts_[static_cast<std::size_t>(tile.index)];
+  PixelCounts& counts = counts_[static_cast<std::size_t>(tile.index)];
   counts = {};
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0; x < tile.x1; ++x) {
       const bool fresh = frame_.surface.id(x, y) != 0 && field.age(x, y) == 0.0f;
       counts.fresh += fresh ? 1 : 0;
-      blend(x, y, counts.take(frame_, x, y));
+      blend(x, y, counts.add(frame_, x, y));
       age_(x, y) = field.age(x, y);
     }
   }

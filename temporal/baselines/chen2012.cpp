@@ -39,7 +39,7 @@ const Planes<3>* Chen2012::step(FrameSource& source) {
   report_.cut = warp.cut;
   report_.skipped_warp = warp.skipped;
   number_ = warp.cut ? 1 : std::min(number_ + 1, static_cast<int>(kMostFrames));
-  report_[Stage::kReproject] = clock.lap();
+  report_[Stage::kWarp] = clock.lap();
   resample(source);
   report_[Stage::kResample] = clock.lap();
 
@@ -62,19 +62,19 @@ const Planes<3>* Chen2012::step(FrameSource& source) {
 void Chen2012::resample(FrameSource& source) {
   const TileGrid tiles = stage_tiles(age_.extent());
   for_each_tile(tiles, [&](const Tile& tile) { find_new_pixels(tile); });
-  for (const Counts& counts : counts_) report_.new_pixels += counts.fresh;
+  for (const PixelCounts& counts : counts_) report_.new_pixels += counts.fresh;
   const bool wanted = !report_.cut && report_.new_pixels > 0;
   const bool resampled = wanted && eigenlight::resample(source, extra_, frame_, extra_mean_);
   if (resampled) report_.extra_samples = kExtraSamples * report_.new_pixels;
   for_each_tile(tiles, [&](const Tile& tile) { merge_samples(tile, resampled); });
-  for (const Counts& counts : counts_) {
+  for (const PixelCounts& counts : counts_) {
     report_.surface_pixels += counts.surface;
     report_.non_finite_pixels += counts.non_finite;
   }
 }
 
 void Chen2012::find_new_pixels(const Tile& tile) {
-  Counts& counts = counts_[static_cast<std::size_t>(tile.index)];
+  PixelCounts& counts = counts_[static_cast<std::size_t>(tile.index)];
   counts = {};
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0; x < tile.x1; ++x) {
@@ -90,7 +90,7 @@ void Chen2012::find_new_pixels(const Tile& tile) {
 
 // u: the mean of all samples of each pixel. age_ says where it can be used: 1, else 0.
 void Chen2012::merge_samples(const Tile& tile, bool resampled) {
-  Counts& counts = counts_[static_cast<std::size_t>(tile.index)];
+  PixelCounts& counts = counts_[static_cast<std::size_t>(tile.index)];
   const float regular = static_cast<float>(std::max(frame_.spp, 1));
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0; x < tile.x1; ++x) {

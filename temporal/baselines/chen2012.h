@@ -5,6 +5,7 @@
 #include "temporal/baselines/chen2012_filter.h"
 #include "temporal/baselines/chen2012_pca.h"
 #include "temporal/denoiser.h"
+#include "temporal/samples/pixel_counts.h"
 
 namespace eigenlight {
 
@@ -45,10 +46,6 @@ class Chen2012 final : public Denoiser {
   void load(StateReader& in) override;
 
  private:
-  struct Counts {
-    std::int64_t surface = 0, fresh = 0, non_finite = 0;
-  };
-
   void find_new_pixels(const Tile& tile);
   void resample(FrameSource& source);
   void merge_samples(const Tile& tile, bool resampled);
@@ -62,7 +59,7 @@ class Chen2012 final : public Denoiser {
 
   ImagePca pca_;
   NewPixelFilter filter_;
-  std::vector<Counts> counts_;  // per tile
+  std::vector<PixelCounts> counts_;  // per tile
   Plane<std::uint8_t> extra_, smooth_;
   Planes<3> extra_mean_, light_, output_;
   Plane<float> old_age_, age_, weight_;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "frame/tiles.h"
-#include "temporal/samples/sample_counts.h"
+#include "temporal/samples/pixel_counts.h"
 #include "temporal/stage_clock.h"
 
 namespace eigenlight {
@@ -47,12 +47,12 @@ const Planes<3>* FrameByFrame::step(FrameSource& source) {
 
 void FrameByFrame::take_signal() {
   const TileGrid grid = stage_tiles(age_.extent());
-  std::vector<SampleCounts> counts(static_cast<std::size_t>(grid.count()));
+  std::vector<PixelCounts> counts(static_cast<std::size_t>(grid.count()));
   for_each_tile(grid, [&](const Tile& tile) {
-    SampleCounts& count = counts[static_cast<std::size_t>(tile.index)];
+    PixelCounts& count = counts[static_cast<std::size_t>(tile.index)];
     for (int y = tile.y0; y < tile.y1; ++y) {
       for (int x = tile.x0; x < tile.x1; ++x) {
-        const bool used = count.take(frame_, x, y);
+        const bool used = count.add(frame_, x, y);
         for (std::size_t c = 0; c < 3; ++c) {
           signal_[c](x, y) = used ? frame_.lights[0].radiance[c](x, y) : 0.0f;
         }
@@ -61,7 +61,7 @@ void FrameByFrame::take_signal() {
       }
     }
   });
-  for (const SampleCounts& count : counts) count.add_to(report_);
+  for (const PixelCounts& count : counts) count.add_to(report_);
 }
 
 void FrameByFrame::save(StateWriter& out) const { out.value(name_, kStateVersion); }

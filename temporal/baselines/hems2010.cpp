@@ -62,7 +62,7 @@ const Planes<3>* Hems2010::step(FrameSource& source) {
            frame_.extent().width, frame_.extent().height, extent.width, extent.height);
   report_.cut = past_.empty() || past_.front().index != frame_.previous_index;
   if (report_.cut) past_.clear();
-  const auto for_tiles = [&](void (Hems2010::*work)(const Tile&, SampleCounts&)) {
+  const auto for_tiles = [&](void (Hems2010::*work)(const Tile&, PixelCounts&)) {
     for_each_tile(tiles_, [&](const Tile& tile) {
       (this->*work)(tile, counts_[static_cast<std::size_t>(tile.index)]);
     });
@@ -72,22 +72,22 @@ const Planes<3>* Hems2010::step(FrameSource& source) {
   report_[Stage::kFilter] = clock.lap();
   for_tiles(&Hems2010::gather);
   keep();
-  report_[Stage::kReproject] = clock.lap();
+  report_[Stage::kWarp] = clock.lap();
 
   report_.frame = frame_.index;
-  for (const SampleCounts& counts : counts_) counts.add_to(report_);
+  for (const PixelCounts& counts : counts_) counts.add_to(report_);
   report_.rays = frame_.rays;
   report_.non_finite_samples = frame_.non_finite_samples;
   return &output_;
 }
 
 // u, where it may be used.
-void Hems2010::take_light(const Tile& tile, SampleCounts& counts) {
+void Hems2010::take_light(const Tile& tile, PixelCounts& counts) {
   const auto& u = frame_.lights[0].radiance;
   counts = {};
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0; x < tile.x1; ++x) {
-      const bool usable = counts.take(frame_, x, y);
+      const bool usable = counts.add(frame_, x, y);
       usable_(x, y) = usable ? 1.0f : 0.0f;
       for (std::size_t c = 0; c < 3; ++c) light_[c](x, y) = usable ? u[c](x, y) : 0.0f;
     }
@@ -112,7 +112,7 @@ void Hems2010::smooth() {
   });
 }
 
-void Hems2010::gather(const Tile& tile, SampleCounts& counts) {
+void Hems2010::gather(const Tile& tile, PixelCounts& counts) {
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0; x < tile.x1; ++x) {
       for (auto& plane : output_) plane(x, y) = 0.0f;

@@ -5,7 +5,7 @@
 
 #include "reproject/taps.h"
 #include "spatial/rivals/cross_bilateral.h"
-#include "temporal/samples/sample_counts.h"
+#include "temporal/samples/pixel_counts.h"
 
 namespace eigenlight {
 
@@ -56,9 +56,9 @@ class Hems2010 final : public Denoiser {
     Plane<float> known;  // 1 where there is such, else 0
   };
 
-  void take_light(const Tile& tile, SampleCounts& counts);
+  void take_light(const Tile& tile, PixelCounts& counts);
   void smooth();
-  void gather(const Tile& tile, SampleCounts& counts);
+  void gather(const Tile& tile, PixelCounts& counts);
   [[nodiscard]] bool gather_pixel(glm::ivec2 p);  // whether any past frame shows the point
   void keep();
 
@@ -70,7 +70,7 @@ class Hems2010 final : public Denoiser {
   std::vector<PastFrame> past_;  // the latest first
   Planes<3> light_, smooth_, output_;
   Plane<float> usable_, known_, age_;
-  std::vector<SampleCounts> counts_;  // per tile
+  std::vector<PixelCounts> counts_;  // per tile
 };
 
 }  // namespace eigenlight

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "temporal/samples/sample_counts.h"
+#include "temporal/samples/pixel_counts.h"
 #include "temporal/stage_clock.h"
 
 namespace eigenlight {
@@ -86,7 +86,7 @@ void Meyer2006::analyze() {
   pca_.reset();
   tracks_ = std::make_unique<PointTracks>(frames, options_.taps);
   shares_ = {};
-  shares_[Stage::kReproject] = clock.lap() / parts;
+  shares_[Stage::kWarp] = clock.lap() / parts;
   pca_ = std::make_unique<TrackPca>(*tracks_, options_.pca);
   shares_[Stage::kProject] = clock.lap() / parts;
   shares_.mean_rank = pca_->bases();
@@ -144,9 +144,9 @@ void Meyer2006::write_report() {
   report_.cut = picture_.cut;
   report_.rays = frame_.rays;
   report_.non_finite_samples = frame_.non_finite_samples;
-  SampleCounts counts{.fresh = picture_.fresh};
+  PixelCounts counts{.fresh = picture_.fresh};
   for (int y = 0; y < extent_.height; ++y) {
-    for (int x = 0; x < extent_.width; ++x) counts.take(frame_, x, y);
+    for (int x = 0; x < extent_.width; ++x) counts.add(frame_, x, y);
   }
   counts.add_to(report_);
 }

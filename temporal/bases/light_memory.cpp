@@ -6,8 +6,8 @@
 namespace eigenlight {
 namespace {
 
-// Forgetting per frame: the longest age, 64 frames.
-constexpr double kLambda = 1.0 - 1.0 / 64.0;
+// Forgetting per frame: coefficients are remembered as long as light is.
+constexpr double kLambda = 1.0 - 1.0 / static_cast<double>(kLongestAge);
 
 // What a newborn basis knows, in frames' worth: the spatial filter that made it averaged some
 // hundred pixels, but at the price of detail.

@@ -17,7 +17,10 @@ inline constexpr float kLargestLight = 1e18f;
 /// Rows that accumulate_tile() best gets at once: that many are summed in float.
 inline constexpr int kSumRows = 4;
 
-/// Deviations beyond which a pixel's innovation loses influence; FireflyOptions has the same.
+/// Frames that light, and the statistics of its coefficients, are remembered at most.
+inline constexpr float kLongestAge = 64.0f;
+
+/// Deviations beyond which a pixel's innovation loses influence.
 inline constexpr float kOutlier = 8.0f;
 
 /// Index of (i, j), i <= j, in a packed upper triangle.
@@ -44,7 +47,7 @@ struct TileSums {
 /// What the sums are taken over.
 struct SumInputs {
   const BasisField& bases;       ///< warped, not yet updated (leave one out)
-  const FrameInput& frame;       ///< raw indirect light u
+  const Planes<3>& light;        ///< u: raw samples of one layer of light
   const Plane<float>& variance;  ///< of one frame's luminance, from earlier frames only
   int active = kMaxBases;        ///< bases that may hold energy; sums of the others stay 0
 };

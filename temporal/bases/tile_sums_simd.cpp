@@ -55,8 +55,8 @@ Pixels LoadPixels(const SumInputs& in, const Block& block, int x, int y, bool is
   const VF largest = hn::Set(d, kLargestLight), one = hn::Set(d, 1.0f);
   Color u, v;
   for (std::size_t c = 0; c < 3; ++c) {
-    prefetch_below(in.frame.lights[0].radiance[c], x, y);
-    u[c] = hn::LoadU(d, in.frame.lights[0].radiance[c].row(y) + x);
+    prefetch_below(in.light[c], x, y);
+    u[c] = hn::LoadU(d, in.light[c].row(y) + x);
   }
   block.Load(0, v);
   const VF age = hn::Load(d, in.bases.ages(x, y)), luminance = Luminance(v);

@@ -25,10 +25,10 @@ void CorrectionOptions::validate() const {
 }
 
 // The filter looks at geometry alone.
-Correction::Correction(Extent extent, const CorrectionOptions& options)
+Correction::Correction(Extent extent, const CorrectionOptions& options, const TapOptions& taps)
     : options_(options),
       gate_(extent, 1),
-      cells_(extent),
+      cells_(extent, taps),
       grid_(stage_tiles(cells_.extent())),
       filter_(cells_.extent(), {.passes = options.passes,
                                 .radius = 1,

@@ -31,7 +31,9 @@ struct CorrectionOptions {
 /// interpolated between tiles. Where it is closed nothing is filtered.
 class Correction {
  public:
-  Correction(Extent extent, const CorrectionOptions& options);
+  /// `taps` say which pixels show the same surface. Throws std::invalid_argument on a bad size or
+  /// option.
+  Correction(Extent extent, const CorrectionOptions& options, const TapOptions& taps = {});
 
   /// Takes in the geometry of `area`, an even number of rows from an even one on (or up to the last
   /// one), for the cells that the last frame needed, while it is in the cache. To be called for all

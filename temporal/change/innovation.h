@@ -3,14 +3,16 @@
 
 #include "frame/frame.h"
 #include "frame/tiles.h"
+#include "temporal/bases/tile_sums.h"
 
 namespace eigenlight {
 
 struct InnovationOptions {
-  /// [0, 100] squared standard errors that a local mean may be off by chance. 2 from the prototype.
+  /// [0, 100] squared standard errors that a local mean may be off by chance. 2 had less error than
+  /// 4 under changing light, and longer ages than 1 under steady light.
   float threshold = 2.0f;
-  /// [1, 255] frames: ages saturate here. The prototype used 64.
-  float max_age = 64.0f;
+  /// [1, 255] frames: ages saturate here.
+  float max_age = kLongestAge;
   bool test = true;  ///< false: ages grow whatever the residual says, b = 0
 
   void validate() const;  ///< throws std::invalid_argument naming the field

@@ -5,6 +5,7 @@
 
 #include "frame/frame.h"
 #include "frame/tiles.h"
+#include "reproject/taps.h"
 
 namespace eigenlight {
 
@@ -32,12 +33,13 @@ void test_blocks(const CorrectionInputs& in, const Rect& area, std::span<Residua
 /// Cell (X, Y) stands for the pixels 2 X + {0, 1}, 2 Y + {0, 1} that show the surface of its upper
 /// left one: same object, and normals within the cosine that taps ask for. These are its members.
 struct ResidualCells {
-  explicit ResidualCells(Extent pixels);
+  explicit ResidualCells(Extent pixels, const TapOptions& same_surface = {});
 
   /// Cells as a frame of their own, of which only camera and surface are set: each has the geometry
   /// of its upper left pixel, but id 0 and depth +inf, as where there is no surface, if none of its
   /// pixels is confirmed: what says nothing must not count as a residual of 0.
-  Frame guides;
+  FrameInput guides;
+  TapOptions taps;              ///< what counts as the same surface
   Planes<3> mean;               ///< residual of the confirmed pixels
   Plane<float> noise;           ///< variance of the mean's luminance: sum v (1/s + 1/n) / count^2
   Plane<float> count;           ///< confirmed pixels, 0 to 4

@@ -120,7 +120,7 @@ void PlaceCellVector(const GBuffer& from, const Place& place, ResidualCells& cel
   const B d;
   const hn::RebindToSigned<B> di;
   const hn::RebindToUnsigned<B> du;
-  const VB normal_cosine = hn::Set(d, TapOptions().normal_cosine);
+  const VB normal_cosine = hn::Set(d, cells.taps.normal_cosine);
   GBuffer& to = cells.guides.surface;
   VB cosine[4] = {hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d)};
   for (std::size_t c = 0; c < 3; ++c) {
@@ -255,8 +255,9 @@ void load_cells(const CorrectionInputs& in, const Rect& tile, ResidualCells& cel
   HWY_DYNAMIC_DISPATCH(LoadCells)(in, tile, cells);
 }
 
-ResidualCells::ResidualCells(Extent pixels)
-    : mean(make_planes<3>({(pixels.width + 1) / 2, (pixels.height + 1) / 2})),
+ResidualCells::ResidualCells(Extent pixels, const TapOptions& same_surface)
+    : taps(same_surface),
+      mean(make_planes<3>({(pixels.width + 1) / 2, (pixels.height + 1) / 2})),
       noise(mean[0].extent()),
       count(mean[0].extent()),
       members(mean[0].extent()) {

@@ -191,7 +191,7 @@ void SpreadCells(const ResidualCells& cells, const FrameInput& guides, const Rec
   const int lanes = static_cast<int>(hn::Lanes(F()));
   const View view{cells, cells.guides.camera};
   const Extent extent = cells.extent();
-  const TapOptions taps;
+  const TapOptions& taps = cells.taps;
   for (int y = tile.y0; y < tile.y1; ++y) {
     const int own = y / 2, other = std::clamp(own + 2 * (y & 1) - 1, 0, extent.height - 1);
     for (int x = tile.x0; x < tile.x1; x += lanes) {

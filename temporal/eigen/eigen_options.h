@@ -22,18 +22,17 @@ struct EigenOptions {
   GuidedOptions guided;
   AtrousOptions atrous{.passes = 4, .radius = 1, .luminance_sigmas = 7.0f};
   /// [0, 255] frames: younger pixels take the guided filter's value the more, the younger they are.
-  float young = 2.0f;
+  float young_age = 2.0f;
   /// [1, 255] frames: the longest age where light changes in ways that no basis knows. A filter
   /// takes noise from the estimate later, but not what an old light left in it.
-  float changing = 12.0f;
-  /// [1, 255] frames: the longest age at edges whose history is blended (edges.h);
-  /// where light changes, two thirds of that of the pixels around, if that is less. From the
-  /// longest age of all on, edges are like other pixels.
-  float edge = 12.0f;
+  float max_age_changing = 12.0f;
+  /// [1, 255] frames: the longest age at edges whose history is blended (edges.h); at most 2/3 of
+  /// the limit of the pixels around. Values of innovation.max_age or more turn the rule off.
+  float max_age_edge = 12.0f;
   /// [0, 1] of the squared luminance: a tile whose variances all lie below it is not filtered.
-  float quiet = 1e-5f;
+  float quiet_variance = 1e-5f;
   /// [0, 1] of the pixels that must need correction before another basis is born.
-  double birth = 0.1;
+  double birth_share = 0.1;
   bool project = true;     ///< solve for coefficients; else the light is taken to be steady
   bool correct = true;     ///< add the smoothed innovation
   bool filter = true;      ///< a-trous passes over the output

@@ -12,22 +12,22 @@ struct Switch {
 };
 
 constexpr std::array kSwitches{
-    Switch{{"projection", "light is taken to be steady: all coefficients stay (1, 0, ...)"},
+    Switch{{"project", "light is taken to be steady: all coefficients stay (1, 0, ...)"},
            [](EigenOptions& options, int&) { options.project = false; }},
     Switch{{"modes", "one basis: light may change by a gain only"},
            [](EigenOptions&, int& bases) { bases = 1; }},
-    Switch{{"shrinkage", "coefficients as least squares gives them, noise and all"},
+    Switch{{"shrink", "coefficients as least squares gives them, noise and all"},
            [](EigenOptions& options, int&) { options.shrink.noise = 0.0; }},
-    Switch{{"innovation-test", "ages grow whatever the residual says"},
+    Switch{{"test", "ages grow whatever the residual says"},
            [](EigenOptions& options, int&) { options.innovation.test = false; }},
     Switch{{"edges", "pixels where surfaces meet remember as long as others"},
-           [](EigenOptions& options, int&) { options.edge = 255.0f; }},
-    Switch{{"correction", "no smoothed innovation, and so no new basis either"},
+           [](EigenOptions& options, int&) { options.max_age_edge = 255.0f; }},
+    Switch{{"correct", "no smoothed innovation, and so no new basis either"},
            [](EigenOptions& options, int&) { options.correct = false; }},
-    Switch{{"resampling", "young pixels get no further samples"},
+    Switch{{"resample", "young pixels get no extra samples"},
            [](EigenOptions& options, int&) { options.budget.share = 0.0; }},
     Switch{{"guided", "young pixels are not filled by the guided filter"},
-           [](EigenOptions& options, int&) { options.young = 0.0f; }},
+           [](EigenOptions& options, int&) { options.young_age = 0.0f; }},
     Switch{{"atrous", "no a-trous passes over the output"},
            [](EigenOptions& options, int&) { options.filter = false; }},
     Switch{{"look-back", "a-trous passes tell edges of light by this frame alone"},
@@ -40,7 +40,7 @@ constexpr std::array kSwitches{
     Switch{{"skip-empty", "all work also in tiles without surface"},
            [](EigenOptions& options, int&) { options.skip_empty = false; }},
     Switch{{"skip-quiet", "a-trous passes also where there is little left to filter"},
-           [](EigenOptions& options, int&) { options.quiet = 0.0f; }},
+           [](EigenOptions& options, int&) { options.quiet_variance = 0.0f; }},
     Switch{{"skip-planar", "a-trous passes weigh geometry also where all taps lie in one plane"},
            [](EigenOptions& options, int&) {
              options.atrous.skip_planar = options.correction.skip_planar = false;

@@ -22,35 +22,36 @@ OutputFilter::OutputFilter(Extent extent, const EigenOptions& options)
       guided_(extent, options.guided),
       atrous_(extent, options.atrous),
       guided_light_(make_planes<3>(extent)),
-      shown_(extent),
-      earlier_(extent) {}
+      shown_{Plane<float>(extent), Plane<float>(extent)} {}
 
-void OutputFilter::warp(const TapSegment& taps, const Tile& row) {
-  if (looks_back_) warp_plane(shown_, taps, row, earlier_);
+void OutputFilter::warp(const TapSegment& taps, const Rect& row) {
+  if (looks_back_) warp_plane(shown_.before, taps, row, shown_.now);
 }
 
-FilterReport OutputFilter::process(const FilterInputs& in, Planes<3>& output,
-                                   Plane<float>& variance) {
-  FilterReport report;
-  report.guided = fill_young(in, output, variance);
+std::span<const std::uint8_t> OutputFilter::find_noisy(const FrameInput& frame,
+                                                       const Planes<3>& output,
+                                                       const Plane<float>& variance) {
+  return atrous_.find_noisy(frame, options_.quiet_variance, output, variance);
+}
+
+std::int64_t OutputFilter::process(const FilterInputs& in, const PlanarBlocks& planes,
+                                   Planes<3>& output, Plane<float>& variance) {
   if (looks_back_) forget_new(in.old_age);
-  if (options_.filter) {
-    report.atrous = atrous_.process(in.frame, options_.quiet, output, variance,
-                                    looks_back_ ? &earlier_ : nullptr);
-    report.geometry = atrous_.planar_pixels();
-  }
-  if (!looks_back_) return report;
+  const std::int64_t skipped =
+      atrous_.filter_noisy(in.frame, planes, options_.quiet_variance, output, variance,
+                           looks_back_ ? &shown_.now : nullptr);
+  if (!looks_back_) return skipped;
   for_each_segment(tiles_, [&](const Tile& row) {
-    for (int x = row.x0; x < row.x1; ++x) shown_(x, row.y0) = luminance(output, x, row.y0);
+    for (int x = row.x0; x < row.x1; ++x) shown_.now(x, row.y0) = luminance(output, x, row.y0);
   });
-  return report;
+  return skipped;
 }
 
 // New pixels have not been shown.
 void OutputFilter::forget_new(const Plane<float>& old_age) {
   for_each_segment(tiles_, [&](const Tile& row) {
     const float* age = old_age.row(row.y0);
-    float* earlier = earlier_.row(row.y0);
+    float* earlier = shown_.now.row(row.y0);
     for (int x = row.x0; x < row.x1; ++x) earlier[x] = age[x] == 0.0f ? kNotShown : earlier[x];
   });
 }
@@ -66,7 +67,7 @@ std::int64_t OutputFilter::fill_young(const FilterInputs& in, Planes<3>& output,
       for (int x = tile.x0; x < tile.x1; ++x) {
         // Without geometry no neighbor can stand in.
         if (in.young(x, y) == 0 || std::isinf(in.frame.surface.depth(x, y))) continue;
-        const float own = in.age(x, y) / options_.young;
+        const float own = in.age(x, y) / options_.young_age;
         for (std::size_t c = 0; c < 3; ++c) {
           const float guided = std::max(guided_light_[c](x, y), 0.0f);
           output[c](x, y) = guided + own * (output[c](x, y) - guided);

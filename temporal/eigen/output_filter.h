@@ -1,6 +1,7 @@
 // From the estimate of each pixel to the picture: what surroundings and the last picture know.
 #pragma once
 
+#include "frame/ping_pong.h"
 #include "frame/state.h"
 #include "temporal/eigen/eigen_options.h"
 
@@ -10,37 +11,37 @@ struct FilterInputs {
   const FrameInput& frame;
   const Plane<float>& old_age;       ///< of the history, 0: the pixel is new
   const Plane<float>& age;           ///< with this frame
-  const Plane<std::uint8_t>& young;  ///< 1 where age is below EigenOptions::young
+  const Plane<std::uint8_t>& young;  ///< 1 where age is below EigenOptions::young_age
 };
 
-/// Pixels left alone.
-struct FilterReport {
-  std::int64_t guided = 0;    ///< in tiles without young pixels
-  std::int64_t atrous = 0;    ///< already quiet enough
-  std::int64_t geometry = 0;  ///< in one plane with all taps
-};
-
-/// Young pixels lean on what their surroundings say of such a surface (Bauszat 2011); then a-trous
-/// passes (atrous.h), which tell edges of light by the last picture as well, brought here through
-/// the taps of the history. For that, keep() or warp() of all rows comes before process() in each
-/// frame but the first.
+/// Young pixels take the value of the guided filter (Bauszat 2011); then come a-trous passes
+/// (atrous.h), which find edges of light in the last picture as well, brought to this frame through
+/// the taps of the history. Calls per frame: start_warp() and warp() of all rows if anything moved,
+/// fill_young(), find_noisy(), process().
 class OutputFilter {
  public:
   OutputFilter(Extent extent, const EigenOptions& options);
 
-  /// Nothing has moved since the last picture.
-  void keep() { std::swap(shown_, earlier_); }
-  /// What the last picture showed of a row of this frame.
-  void warp(const TapSegment& taps, const Tile& row);
-  /// Filters the estimate in place, and the variance of its luminance.
-  FilterReport process(const FilterInputs& in, Planes<3>& output, Plane<float>& variance);
+  void start_warp() { shown_.swap(); }
+  /// Brings the luminance of the last picture to a row of this frame.
+  void warp(const TapSegment& taps, const Rect& row);
+  /// Gives young pixels of the estimate the guided filter's value in the share that their age lacks
+  /// of young_age; their variance falls with it. Returns the pixels in tiles without young ones.
+  std::int64_t fill_young(const FilterInputs& in, Planes<3>& output, Plane<float>& variance);
+  /// The tiles of stage_tiles() that the a-trous passes filter, 1 each.
+  [[nodiscard]] std::span<const std::uint8_t> find_noisy(const FrameInput& frame,
+                                                         const Planes<3>& output,
+                                                         const Plane<float>& variance);
+  /// Filters the estimate in place, and the variance of its luminance. `planes` are the frame's.
+  /// Returns the surface pixels that were quiet enough to be skipped.
+  std::int64_t process(const FilterInputs& in, const PlanarBlocks& planes, Planes<3>& output,
+                       Plane<float>& variance);
 
-  void save(StateWriter& out) const { out.plane("shown light", shown_); }
+  void save(StateWriter& out) const { out.plane("shown light", shown_.now); }
   /// Throws std::runtime_error where StateReader does.
-  void load(StateReader& in) { in.plane("shown light", shown_); }
+  void load(StateReader& in) { in.plane("shown light", shown_.now); }
 
  private:
-  std::int64_t fill_young(const FilterInputs& in, Planes<3>& output, Plane<float>& variance);
   void forget_new(const Plane<float>& old_age);
 
   EigenOptions options_;
@@ -49,7 +50,7 @@ class OutputFilter {
   GuidedFilter guided_;
   Atrous atrous_;
   Planes<3> guided_light_;
-  Plane<float> shown_, earlier_;  // luminance of the last picture, and brought to this frame
+  PingPong<Plane<float>> shown_;  // luminance of the last picture, brought to this frame
 };
 
 }  // namespace eigenlight

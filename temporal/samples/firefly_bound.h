@@ -7,6 +7,7 @@
 
 #include "frame/frame.h"
 #include "frame/tiles.h"
+#include "temporal/bases/tile_sums.h"
 
 namespace eigenlight {
 
@@ -16,7 +17,7 @@ inline constexpr int kFireflyBlock = 8;
 struct FireflyOptions {
   /// [1, 1000] standard deviations that a sample may be off its prediction. Exponential noise goes
   /// beyond 8 with a chance of 0.012 %, and so loses 0.1 % of its light at most.
-  float deviations = 8.0f;
+  float deviations = kOutlier;
   /// [1, 1000] times the light around it that a new pixel may be as bright as.
   float times = 16.0f;
   /// (0, 1] share of the pixels around that may be off so far: more are a change of the light.

@@ -3,15 +3,12 @@
 
 #include "frame/guides.h"
 #include "frame/tiles.h"
+#include "temporal/samples/pixel_counts.h"
 
 namespace eigenlight {
 
-struct GuideCounts {
-  int surface = 0;  ///< pixels with an id
-  int usable = 0;   ///< those of them for which has_usable_guides() is true
-};
-
-/// Counts the pixels [x0, x1) of row y0 of `row`.
-[[nodiscard]] GuideCounts count_guides(const GBuffer& surface, const Rect& row);
+/// Counts the pixels [x0, x1) of row y0 of `row`: surface pixels (id not 0), and the unguided ones
+/// of them, for which has_usable_guides() is false.
+[[nodiscard]] PixelCounts count_guides(const GBuffer& surface, const Rect& row);
 
 }  // namespace eigenlight

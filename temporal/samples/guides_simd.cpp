@@ -15,11 +15,11 @@ namespace hn = hwy::HWY_NAMESPACE;
 using F = hn::ScalableTag<float>;
 using VF = hn::Vec<F>;
 
-GuideCounts CountGuides(const GBuffer& surface, const Rect& row) {
+PixelCounts CountGuides(const GBuffer& surface, const Rect& row) {
   const F d;
   const hn::RebindToUnsigned<F> du;
   const int lanes = static_cast<int>(hn::Lanes(d)), y = row.y0;
-  GuideCounts counts;
+  PixelCounts counts;
   for (int x = row.x0; x < row.x1; x += lanes) {
     prefetch_below(surface.id, x, y);
     prefetch_below(surface.depth, x, y);
@@ -41,8 +41,8 @@ GuideCounts CountGuides(const GBuffer& surface, const Rect& row) {
     }
     usable = hn::And(usable,
                      hn::And(hn::Gt(square, hn::Set(d, 0.9f)), hn::Lt(square, hn::Set(d, 1.1f))));
-    counts.surface += static_cast<int>(hn::CountTrue(d, shown));
-    counts.usable += static_cast<int>(hn::CountTrue(d, usable));
+    counts.surface += static_cast<std::int64_t>(hn::CountTrue(d, shown));
+    counts.unguided += static_cast<std::int64_t>(hn::CountTrue(d, hn::AndNot(usable, shown)));
   }
   return counts;
 }
@@ -56,7 +56,7 @@ namespace eigenlight {
 
 HWY_EXPORT(CountGuides);
 
-GuideCounts count_guides(const GBuffer& surface, const Rect& row) {
+PixelCounts count_guides(const GBuffer& surface, const Rect& row) {
   const FloatTrapsOff comparisons_meet_nan;
   return HWY_DYNAMIC_DISPATCH(CountGuides)(surface, row);
 }

@@ -1,15 +1,15 @@
 // This frame's samples, regular and granted ones, as one mean per pixel; and how much they scatter.
 #pragma once
 
-#include <cstdint>
-
 #include "frame/frame.h"
 #include "frame/tiles.h"
+#include "temporal/samples/pixel_counts.h"
 
 namespace eigenlight {
 
 struct SignalInputs {
   const FrameInput& frame;
+  const Planes<3>& raw;              ///< the samples of one layer of its light
   const Plane<std::uint8_t>* extra;  ///< samples granted beyond frame.spp, or null: none
   const Planes<3>* extra_mean;       ///< of those, where there are any; null with `extra`; may be
                                      ///< the same as SignalOutputs::light
@@ -21,17 +21,13 @@ struct SignalOutputs {
   Plane<float>& samples;  ///< all samples over frame.spp; 0 where the light is not usable
 };
 
-struct SignalCounts {
-  std::int64_t fresh = 0;       ///< surface pixels without history
-  std::int64_t non_finite = 0;  ///< surface pixels with NaN, Inf, or light beyond kLargestLight
-};
-
 /// Fills the pixels of a tile at most kSegment wide. Light is usable on surfaces where the sum of
-/// its channels' magnitudes is at most kLargestLight.
-SignalCounts merge_samples(const SignalInputs& in, const Rect& tile, const SignalOutputs& out);
+/// its channels' magnitudes is at most kLargestLight. Counts fresh and non_finite pixels alone.
+PixelCounts merge_samples(const SignalInputs& in, const Rect& tile, const SignalOutputs& out);
 
 struct FreshInputs {
   const FrameInput& frame;
+  const Planes<3>& raw;            ///< the samples of one layer of its light
   const Plane<float>& samples;     ///< as merge_samples leaves it, for the whole image
   const Plane<float>& age;         ///< of the history
   const Plane<float>& brightness;  ///< of blocks of 8 x 8 pixels, for the whole image

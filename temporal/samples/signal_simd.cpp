@@ -22,7 +22,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using F = hn::ScalableTag<float>;
 using VF = hn::Vec<F>;
 
-SignalCounts MergeSamples(const SignalInputs& in, const Rect& tile, const SignalOutputs& out) {
+PixelCounts MergeSamples(const SignalInputs& in, const Rect& tile, const SignalOutputs& out) {
   const F d;
   const hn::RebindToUnsigned<F> du;
   const hn::Rebind<std::uint8_t, F> bytes;
@@ -31,7 +31,7 @@ SignalCounts MergeSamples(const SignalInputs& in, const Rect& tile, const Signal
   const VF regular = hn::Set(d, static_cast<float>(std::max(in.frame.spp, 1)));
   const VF zero = hn::Zero(d), per_regular = hn::Div(hn::Set(d, 1.0f), regular);
   const VF nan = hn::Set(d, std::numeric_limits<float>::quiet_NaN());
-  SignalCounts counts;
+  PixelCounts counts;
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0; x < tile.x1; x += lanes) {
       VF extra = zero;
@@ -43,9 +43,9 @@ SignalCounts MergeSamples(const SignalInputs& in, const Rect& tile, const Signal
       const VF scale = hn::Div(hn::Set(d, 1.0f), samples);
       VF light[3], size = zero;
       for (std::size_t c = 0; c < 3; ++c) {
-        prefetch_below(in.frame.lights[0].radiance[c], x, y);
+        prefetch_below(in.raw[c], x, y);
         prefetch_below(out.light[c], x, y);
-        light[c] = hn::Mul(regular, hn::LoadU(d, in.frame.lights[0].radiance[c].row(y) + x));
+        light[c] = hn::Mul(regular, hn::LoadU(d, in.raw[c].row(y) + x));
         if (in.extra_mean != nullptr) {
           prefetch_below((*in.extra_mean)[c], x, y);
           const VF more = hn::Mul(extra, hn::LoadU(d, (*in.extra_mean)[c].row(y) + x));
@@ -110,16 +110,13 @@ struct Sums {
 
 // Window sums of row y along x for the pixels of the tile.
 void SumRow(const FreshInputs& in, const Rect& tile, int y, Sums& sums) {
-  const FrameInput& frame = in.frame;
   alignas(64) double count[kSegment + 2 * kRadius] = {}, value[kSegment + 2 * kRadius] = {};
   const int first = std::max(tile.x0 - kRadius, 0);
   const int last = std::min(tile.x1 + kRadius, in.samples.width());
   const int shift = first - (tile.x0 - kRadius);
   const float* used = in.samples.at(first, y);
   const float* brightness = in.brightness.row(y / kFireflyBlock);
-  const float* u[3] = {frame.lights[0].radiance[0].at(first, y),
-                       frame.lights[0].radiance[1].at(first, y),
-                       frame.lights[0].radiance[2].at(first, y)};
+  const float* u[3] = {in.raw[0].at(first, y), in.raw[1].at(first, y), in.raw[2].at(first, y)};
   for (int i = 0; i < last - first; ++i) {
     const bool usable = used[i] > 0.0f;
     const double l = 0.2126 * static_cast<double>(u[0][i]) + 0.7152 * static_cast<double>(u[1][i]) +
@@ -218,7 +215,7 @@ HWY_EXPORT(MergeSamples);
 HWY_EXPORT(EstimateVariance);
 HWY_EXPORT(FreshVariance);
 
-SignalCounts merge_samples(const SignalInputs& in, const Rect& tile, const SignalOutputs& out) {
+PixelCounts merge_samples(const SignalInputs& in, const Rect& tile, const SignalOutputs& out) {
   EL_DCHECK(tile.x1 - tile.x0 <= kSegment);
   const FloatTrapsOff comparisons_meet_nan;
   return HWY_DYNAMIC_DISPATCH(MergeSamples)(in, tile, out);

@@ -19,7 +19,7 @@ import argparse
 from results import load_results
 
 
-LOOP_STAGES = ("reproject", "budget", "project", "update", "filter")
+LOOP_STAGES = ("warp", "budget", "project", "predict", "bound", "correct", "learn", "update", "filter")
 
 
 def markdown(head, rows):

@@ -27,7 +27,7 @@ function checkStart() {
 function checkPlots() {
   check("a bar path per stage", document.querySelectorAll("#plot-time path[data-stage]").length === 8);
   check("bars have area", byId("plot-time").querySelector("path[data-stage=source]").getBBox().height > 20);
-  check("legend names the stages", byId("legend").textContent.includes("reproject"));
+  check("legend names the stages", byId("legend").textContent.includes("warp"));
   for (const id of ["plot-new", "plot-rank"]) {
     const box = byId(id).querySelector("path.curve").getBBox();
     check(`${id} has a curve or a dot`, expectedFrames > 1 ? box.width > 100 : byId(id).querySelectorAll("circle").length === 1);

@@ -25,7 +25,7 @@ inline SumPixel sum_pixel(const SumInputs& in, int x, int y) {
   SumPixel pixel;
   bool finite = true;
   for (int c = 0; c < 3; ++c) {
-    const double u = in.frame.lights[0].radiance[static_cast<std::size_t>(c)](x, y);
+    const double u = in.light[static_cast<std::size_t>(c)](x, y);
     pixel.r[c] = u - v.value(x, y, c, 0);
     finite = finite && std::abs(u) <= kLargestLight;
   }

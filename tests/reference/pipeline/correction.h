@@ -86,7 +86,7 @@ inline void bound_pixel(const FireflyOptions& options, bool steady, double brigh
   }
 }
 
-inline void bound_fireflies(const FireflyOptions& options, Residual& r) {
+inline void bound(const FireflyOptions& options, Residual& r) {
   const std::vector<FireflyBlock> blocks = firefly_blocks(r, options);
   r.brightness.each([&](int bx, int by) {
     FireflyBlock sum;

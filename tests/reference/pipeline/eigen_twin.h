@@ -39,14 +39,14 @@ class EigenTwin {
   /// Red, green, blue (and variance) of the picture.
   const reference::AtrousImage& step(const Given& in) {
     warp(in);
-    merge(in);
     project(in.frame);
+    merge_samples(in);
     predict();
-    bound_fireflies(options_.fireflies, r_);
+    bound(options_.fireflies, r_);
     correct(options_.correction, in.frame, r_);
-    memory_.advance(coefficients_, learning_);
-    innovate(in.frame);
-    shorten_memory(in.frame);
+    memory_.learn(coefficients_, learning_);
+    test_innovation(in.frame);
+    shorten_ages(in.frame);
     update(in.newborn);
     if (in.newborn > 0) memory_.born(in.newborn);
     for (const int k : in.retired) {
@@ -100,7 +100,7 @@ class EigenTwin {
     r_.variance = std::move(variance);
   }
 
-  void merge(const Given& in) {
+  void merge_samples(const Given& in) {
     r_.samples.each([&](int x, int y) {
       const double regular = std::max(in.frame.spp, 1), extra = in.extra(x, y);
       double size = 0.0;
@@ -152,7 +152,7 @@ class EigenTwin {
   }
 
   // New ages, and variances of one frame.
-  void innovate(const FrameInput& frame) {
+  void test_innovation(const FrameInput& frame) {
     Image variance = r_.variance;
     new_age_.each([&](int x, int y) {
       const double n = r_.age(x, y), s = r_.samples(x, y);
@@ -179,15 +179,15 @@ class EigenTwin {
     r_.variance = std::move(variance);
   }
 
-  void shorten_memory(const FrameInput& frame) {
+  void shorten_ages(const FrameInput& frame) {
     const Plane<std::uint8_t> edges = find_edges(frame);
     const double most = static_cast<double>(options_.innovation.max_age);
-    const double least = std::min(static_cast<double>(options_.changing), most);
+    const double least = std::min(static_cast<double>(options_.max_age_changing), most);
     new_age_.each([&](int x, int y) {
       const int columns = r_.change.grid.columns();
       const double change = r_.change[y / kCoefficientTile * columns + x / kCoefficientTile];
       const double longest = 1.0 / ((1.0 - change) / most + change / least);
-      const double edge = std::min(static_cast<double>(options_.edge), longest * 2.0 / 3.0);
+      const double edge = std::min(static_cast<double>(options_.max_age_edge), longest * 2.0 / 3.0);
       if (edges(x, y) != 0 || change > 0.0) {
         const double bound = edges(x, y) != 0 ? edge : longest;
         new_age_(x, y) = std::min(new_age_(x, y), std::max(bound, r_.samples(x, y)));
@@ -261,7 +261,7 @@ class EigenTwin {
       const std::size_t at = picture_.index(x, y);
       picture_.values[3][at] = n > 0.0 ? r_.variance(x, y) / n : 0.0;
       for (std::size_t c = 0; c < 3; ++c) shown[c](x, y) = picture_.values[c][at];
-      young(x, y) = frame.surface.id(x, y) != 0 && n < options_.young ? 1 : 0;
+      young(x, y) = frame.surface.id(x, y) != 0 && n < options_.young_age ? 1 : 0;
     });
     // The guided filter's twin takes planes of float: nothing of it comes back to the history.
     const Planes<3> signal = rounded(shown);
@@ -283,7 +283,7 @@ class EigenTwin {
                     const Planes<3>& guided) {
     new_age_.each([&](int x, int y) {
       if (young(x, y) == 0 || std::isinf(frame.surface.depth(x, y))) return;
-      const double own = new_age_(x, y) / options_.young;
+      const double own = new_age_(x, y) / options_.young_age;
       const std::size_t at = picture_.index(x, y);
       for (std::size_t c = 0; c < 3; ++c) {
         const double smooth = std::max(static_cast<double>(guided[c](x, y)), 0.0);
@@ -304,7 +304,7 @@ class EigenTwin {
         }
       };
       each([&](std::size_t at, double l) {
-        quiet = quiet && !(before.values[3][at] > options_.quiet * l * l);
+        quiet = quiet && !(before.values[3][at] > options_.quiet_variance * l * l);
       });
       if (!quiet) continue;
       each([&](std::size_t at, double) {

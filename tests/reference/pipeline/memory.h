@@ -30,7 +30,7 @@ class Memory {
   }
 
   /// R <- lambda R + c c^T with c = (1, delta_1, ...), and q = (R / R_00 + ridge)^-1 c.
-  void advance(TileVectors& coefficients, TileVectors& learning) {
+  void learn(TileVectors& coefficients, TileVectors& learning) {
     const int rank = active();
     for (int tile = 0; tile < static_cast<int>(information_.size()); ++tile) {
       SmallVector c = SmallVector::Zero(bases_);

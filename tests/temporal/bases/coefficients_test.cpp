@@ -42,8 +42,8 @@ struct Scene {
     std::vector<TileSums> out(static_cast<std::size_t>(grid.count()));
     for (int i = 0; i < grid.count(); ++i) {
       TileSums& sums = out[static_cast<std::size_t>(i)];
-      accumulate_tile({field, frame, variance}, grid.tile(i), sums);
-      admit_outliers({field, frame, variance}, grid.tile(i), sums);
+      accumulate_tile({field, frame.lights[0].radiance, variance}, grid.tile(i), sums);
+      admit_outliers({field, frame.lights[0].radiance, variance}, grid.tile(i), sums);
     }
     return out;
   }

@@ -48,7 +48,7 @@ TEST(TileSums, AgreeWithTheTwinOnEveryTarget) {
     const Plane<float> variance = random_plane(extent, 5, 0.05f, 0.6f);
     for (const int bases : {1, 3, kMaxBases}) {
       const BasisField field = random_bases(extent, bases, 8);
-      const SumInputs in{field, frame, variance};
+      const SumInputs in{field, frame.lights[0].radiance, variance};
       for (const int side : {32, kSegment}) {
         const TileGrid grid(extent, side, 32);
         for (int index = 0; index < grid.count(); ++index) {
@@ -72,9 +72,9 @@ TEST(TileSums, AddToWhatIsThere) {
   const Plane<float> variance = random_plane(extent, 5, 0.05f, 0.6f);
   const BasisField field = random_bases(extent, 2, 8);
   TileSums once, twice;
-  accumulate_tile({field, frame, variance}, {0, 0, 32, 32}, once);
-  accumulate_tile({field, frame, variance}, {0, 0, 32, 16}, twice);
-  accumulate_tile({field, frame, variance}, {0, 16, 32, 32}, twice);
+  accumulate_tile({field, frame.lights[0].radiance, variance}, {0, 0, 32, 32}, once);
+  accumulate_tile({field, frame.lights[0].radiance, variance}, {0, 0, 32, 16}, twice);
+  accumulate_tile({field, frame.lights[0].radiance, variance}, {0, 16, 32, 32}, twice);
   for (std::size_t i = 0; i < once.gram.size(); ++i) {
     EXPECT_DOUBLE_EQ(twice.gram[i], once.gram[i]);
   }
@@ -96,7 +96,7 @@ TEST(TileSums, LeaveOutWhatCannotBeUsed) {
   fill_bases(field, 1.0f);
   const auto pixels = [&] {
     TileSums sums;
-    accumulate_tile({field, frame, variance}, {0, 0, 5, 3}, sums);
+    accumulate_tile({field, frame.lights[0].radiance, variance}, {0, 0, 5, 3}, sums);
     EXPECT_TRUE(std::isfinite(sums.gram[0]));
     EXPECT_TRUE(std::isfinite(sums.innovation[0]));
     EXPECT_TRUE(std::isfinite(sums.spread[0]));
@@ -135,7 +135,7 @@ TEST(TileSums, OfAGainKnowIt) {
     }
   }
   TileSums sums;
-  accumulate_tile({field, frame, variance}, {0, 0, 32, 32}, sums);
+  accumulate_tile({field, frame.lights[0].radiance, variance}, {0, 0, 32, 32}, sums);
   EXPECT_GT(sums.gram[0], 0.0);
   EXPECT_NEAR(sums.innovation[0], 0.5 * sums.gram[0], 1e-5 * sums.gram[0]);
 }
@@ -155,9 +155,9 @@ TEST(TileSums, HoldBackALineOfOutliersAndFollowATileOfThem) {
     }
     TileSums sums;
     // In two parts: which pixels are few is decided for the whole tile.
-    accumulate_tile({field, frame, variance}, {0, 0, 32, 1}, sums);
-    accumulate_tile({field, frame, variance}, {0, 1, 32, 32}, sums);
-    admit_outliers({field, frame, variance}, {0, 0, 32, 32}, sums);
+    accumulate_tile({field, frame.lights[0].radiance, variance}, {0, 0, 32, 1}, sums);
+    accumulate_tile({field, frame.lights[0].radiance, variance}, {0, 1, 32, 32}, sums);
+    admit_outliers({field, frame.lights[0].radiance, variance}, {0, 0, 32, 32}, sums);
     return 1.0 + sums.innovation[0] / sums.gram[0];
   };
   for_each_target([&] {

@@ -26,8 +26,8 @@ constexpr float kInf = std::numeric_limits<float>::infinity();
 EigenOptions temporal_only() {
   EigenOptions parts;
   parts.budget.share = 0.0;
-  parts.young = 0.0f;
-  parts.quiet = 1.0f;
+  parts.young_age = 0.0f;
+  parts.quiet_variance = 1.0f;
   return parts;
 }
 
@@ -328,12 +328,12 @@ TEST(EigenDenoiser, RefusesBadOptions) {
     change(parts);
     EXPECT_THROW(EigenDenoiser({{8, 8}, 3}, parts), std::invalid_argument);
   };
-  refused([](EigenOptions& parts) { parts.quiet = -1.0f; });
-  refused([](EigenOptions& parts) { parts.quiet = kNan; });
-  refused([](EigenOptions& parts) { parts.birth = 2.0; });
-  refused([](EigenOptions& parts) { parts.young = -1.0f; });
-  refused([](EigenOptions& parts) { parts.changing = 0.0f; });
-  refused([](EigenOptions& parts) { parts.changing = kNan; });
+  refused([](EigenOptions& parts) { parts.quiet_variance = -1.0f; });
+  refused([](EigenOptions& parts) { parts.quiet_variance = kNan; });
+  refused([](EigenOptions& parts) { parts.birth_share = 2.0; });
+  refused([](EigenOptions& parts) { parts.young_age = -1.0f; });
+  refused([](EigenOptions& parts) { parts.max_age_changing = 0.0f; });
+  refused([](EigenOptions& parts) { parts.max_age_changing = kNan; });
   refused([](EigenOptions& parts) { parts.taps.plane_distance = 0.0f; });
   refused([](EigenOptions& parts) { parts.innovation.max_age = 0.0f; });
   EXPECT_THROW(EigenDenoiser({{8, 8}, 0}), std::invalid_argument);

@@ -35,14 +35,15 @@ TEST(Guides, CountAsTheSlowTestDoes) {
     for (const Extent extent : kSweepExtents) {
       const GBuffer surface = nonsense(extent);
       for (int y = 0; y < extent.height; ++y) {
-        GuideCounts expected;
+        PixelCounts expected;
         for (int x = 0; x < extent.width; ++x) {
-          expected.surface += surface.id(x, y) != 0 ? 1 : 0;
-          expected.usable += has_usable_guides(surface, x, y) ? 1 : 0;
+          const bool shown = surface.id(x, y) != 0;
+          expected.surface += shown ? 1 : 0;
+          expected.unguided += shown && !has_usable_guides(surface, x, y) ? 1 : 0;
         }
-        const GuideCounts found = count_guides(surface, {0, y, extent.width, y + 1});
+        const PixelCounts found = count_guides(surface, {0, y, extent.width, y + 1});
         ASSERT_EQ(found.surface, expected.surface) << y;
-        ASSERT_EQ(found.usable, expected.usable) << y;
+        ASSERT_EQ(found.unguided, expected.unguided) << y;
       }
     }
   });

@@ -36,14 +36,14 @@ struct Scene {
       }
     }
   }
-  SignalCounts merge(bool resampled) {
-    SignalCounts counts;
+  PixelCounts merge(bool resampled) {
+    PixelCounts counts;
     for_each([&](const Rect& tile) {
-      const SignalCounts found = merge_samples(
-          {frame, resampled ? &extra : nullptr, resampled ? &extra_mean : nullptr, age}, tile,
-          {light, samples});
-      counts.fresh += found.fresh;
-      counts.non_finite += found.non_finite;
+      const PixelCounts found = merge_samples(
+          {frame, frame.lights[0].radiance, resampled ? &extra : nullptr,
+           resampled ? &extra_mean : nullptr, age},
+          tile, {light, samples});
+      counts += found;
     });
     return counts;
   }
@@ -60,7 +60,7 @@ struct Scene {
   Plane<float> samples, variance, brightness;
 };
 
-void expect_merged(const Scene& scene, bool resampled, const SignalCounts& counts) {
+void expect_merged(const Scene& scene, bool resampled, const PixelCounts& counts) {
   std::int64_t fresh = 0, non_finite = 0;
   for (int y = 0; y < scene.light[0].height(); ++y) {
     for (int x = 0; x < scene.light[0].width(); ++x) {
@@ -95,7 +95,7 @@ TEST(MergeSamples, IsTheMeanOfAllSamplesOnEveryTarget) {
     for (const Extent extent : kSweepExtents) {
       for (const bool resampled : {false, true}) {
         Scene scene(extent);
-        const SignalCounts counts = scene.merge(resampled);
+        const PixelCounts counts = scene.merge(resampled);
         expect_merged(scene, resampled, counts);
       }
     }
@@ -136,8 +136,9 @@ TEST(FreshVariance, IsThatOfTheSurroundingsAtNewPixelsAloneOnEveryTarget) {
       (void)scene.merge(true);
       const Plane<float> before = scene.variance.clone();
       scene.for_each([&](const Rect& tile) {
-        fresh_variance({scene.frame, scene.samples, scene.age, scene.brightness}, tile,
-                       scene.variance);
+        fresh_variance({scene.frame, scene.frame.lights[0].radiance, scene.samples, scene.age,
+                        scene.brightness},
+                       tile, scene.variance);
       });
       for (int y = 0; y < extent.height; ++y) {
         for (int x = 0; x < extent.width; ++x) {

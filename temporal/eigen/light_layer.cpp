@@ -1,0 +1,268 @@
+#include "temporal/eigen/light_layer.h"
+
+#include <algorithm>
+
+#include "frame/strips.h"
+#include "reproject/warp.h"
+#include "temporal/bases/predict.h"
+#include "temporal/bases/update.h"
+#include "temporal/change/edges.h"
+#include "temporal/samples/signal.h"
+
+namespace eigenlight {
+namespace {
+
+// Longest age at edges, over that of the pixels around, where light changes.
+constexpr float kEdgeShare = 2.0f / 3.0f;
+
+PingPong<Plane<float>> two_planes(Extent extent) {
+  return {Plane<float>(extent), Plane<float>(extent)};
+}
+
+// Room for all bases from the start: a basis that is born allocates nothing.
+PingPong<BasisField> two_fields(Extent extent, int bases) {
+  PingPong<BasisField> fields{BasisField(extent, bases), BasisField(extent, bases)};
+  fields.now.reshape(1);
+  fields.before.reshape(1);
+  return fields;
+}
+
+}  // namespace
+
+LightLayer::LightLayer(int index, const DenoiserOptions& options, const EigenOptions& parts)
+    : index_(index),
+      options_(parts),
+      tiles_(options.extent, kCoefficientTile, kCoefficientTile),
+      bases_(two_fields(options.extent, options.bases)),
+      variance_(two_planes(options.extent)),
+      memory_(options.extent, options.bases),
+      fireflies_(options.extent, parts.fireflies),
+      correction_(options.extent, parts.correction, parts.taps),
+      filter_(options.extent, parts),
+      coefficients_(options.extent, options.bases),
+      learning_(options.extent, options.bases),
+      sums_(tiles_),
+      counts_(tiles_),
+      residual_(make_planes<3>(options.extent)),
+      innovation_(options.extent),
+      expected_(options.extent),
+      samples_(options.extent),
+      old_age_(options.extent),
+      new_age_(options.extent),
+      output_variance_(options.extent),
+      young_(options.extent),
+      output_(make_planes<3>(options.extent)) {}
+
+void LightLayer::start_warp(const SharedFrame& shared) {
+  sums_.fill({});
+  if (shared.is_cut()) {
+    memory_.reset();
+    bases_.now.reshape(memory_.active());
+    bases_.now.clear();
+    variance_.now.fill(0.0f);
+  }
+  if (!shared.is_moving()) return;
+  bases_.swap();
+  bases_.now.reshape(bases_.before.bases());
+  variance_.swap();
+  filter_.start_warp();
+}
+
+void LightLayer::warp_row(const TapSegment& taps, const Tile& row) {
+  warp_bases(bases_.before, taps, row, bases_.now);
+  warp_plane(variance_.before, taps, row, variance_.now);
+  filter_.warp(taps, row);
+}
+
+void LightLayer::sum_products(const SharedFrame& shared, const Strip& band) {
+  const Planes<3>& light = shared.frame().lights[static_cast<std::size_t>(index_)].radiance;
+  const SumInputs history{bases_.now, light, variance_.now, memory_.active()};
+  for_each_part(tiles_, band, [&](const Tile& part) {
+    if (!shared.is_empty(part)) accumulate_tile(history, part, sums_[part]);
+  });
+}
+
+void LightLayer::finish_warp(const SharedFrame& shared) {
+  const Planes<3>& light = shared.frame().lights[static_cast<std::size_t>(index_)].radiance;
+  const SumInputs history{bases_.now, light, variance_.now, memory_.active()};
+  for_each_tile(tiles_, [&](const Tile& tile) { admit_outliers(history, tile, sums_[tile]); });
+}
+
+void LightLayer::project() {
+  if (options_.project) {
+    solve_coefficients(sums_.values(), memory_.expected(), options_.shrink, coefficients_);
+  }
+  coefficients_.set_used(memory_.active());
+}
+
+CorrectionInputs LightLayer::correction_inputs(const SharedFrame& shared) const {
+  return {shared.frame(), residual_, innovation_, old_age_, samples_, variance_.now};
+}
+
+void LightLayer::predict(const SharedFrame& shared, bool resampled) {
+  const SignalInputs signal{
+      shared.frame(), shared.frame().lights[static_cast<std::size_t>(index_)].radiance,
+      resampled ? &shared.extra() : nullptr, resampled ? &residual_ : nullptr, old_age_};
+  const PredictOutputs prediction{residual_, innovation_, expected_, variance_.now};
+  counts_.fill({});
+  for_each_strip(tiles_, [&](const Strip& strip) {
+    for_each_band(strip, kFireflyBlock, [&](const Strip& band) {
+      for_each_segment(tiles_, band, [&](const Tile& row) {
+        counts_[row] += merge_samples(signal, row, {residual_, samples_});
+        predict_tile(bases_.now, coefficients_, row, prediction);
+      });
+      fireflies_.count({expected_, old_age_, samples_, variance_.now}, {residual_, innovation_},
+                       band.area);
+      if (options_.correct) correction_.count(correction_inputs(shared), band.area);
+    });
+  });
+}
+
+void LightLayer::bound(const SharedFrame& shared) {
+  const auto count_again = [&](const Rect& block) {
+    if (options_.correct) correction_.count(correction_inputs(shared), block);
+  };
+  bounded_ = fireflies_.bound({expected_, old_age_, samples_, variance_.now},
+                              {residual_, innovation_}, count_again);
+}
+
+void LightLayer::correct(const SharedFrame& shared) {
+  corrected_share_ =
+      options_.correct ? correction_.process(correction_inputs(shared), innovation_) : 0.0;
+}
+
+void LightLayer::learn() {
+  memory_.advance(coefficients_, learning_);
+  newborn_ = corrected_share_ > options_.birth_share ? memory_.free_slot() : 0;
+}
+
+void LightLayer::update(const SharedFrame& shared) {
+  make_room(std::max(memory_.active(), newborn_ + 1));
+  for_each_strip(tiles_, [&](const Strip& strip) {
+    innovation_tile({innovation_, old_age_, samples_}, options_.innovation, strip.area,
+                    {new_age_, variance_.now});
+    for_each_part(tiles_, strip, [&](const Tile& tile) { test_tile(shared, tile); });
+    for_each_segment(tiles_, strip, [&](const Tile& row) {
+      if (!shared.is_empty(row)) update_row(shared, row);
+    });
+  });
+  if (newborn_ > 0) memory_.born(newborn_);
+  for (const int k : memory_.retire()) bases_.now.clear_basis(k);
+}
+
+// In place: memory that is overwritten need not be fetched first. Only a birth moves the bases.
+void LightLayer::make_room(int bases) {
+  if (bases == bases_.now.bases()) return;
+  bases_.before.reshape(bases);
+  bases_.before.assign(bases_.now);
+  bases_.swap();
+}
+
+// What innovation_tile() leaves to be done: the noise of new pixels, and ages that must stay short.
+void LightLayer::test_tile(const SharedFrame& shared, const Tile& tile) {
+  if (shared.is_empty(tile)) return clear_tile(tile);
+  const Planes<3>& light = shared.frame().lights[static_cast<std::size_t>(index_)].radiance;
+  fresh_variance({shared.frame(), light, samples_, old_age_, fireflies_.brightness()}, tile,
+                 variance_.now);
+  shorten_ages(shared, tile);
+}
+
+// Where light changes in ways that no basis knows, memory ends sooner: the longest age of a tile
+// lies between the two by the share that each has in the weight of a frame.
+float LightLayer::longest_age(const Tile& tile) const {
+  const float change = options_.correct ? correction_.change(tile.index) : 0.0f;
+  const float most = options_.innovation.max_age;
+  const float least = std::min(options_.max_age_changing, most);
+  return change > 0.0f ? 1.0f / ((1.0f - change) / most + change / least) : most;
+}
+
+void LightLayer::shorten_ages(const SharedFrame& shared, const Tile& tile) {
+  const float inside = longest_age(tile);
+  const float at_edges =
+      shared.has_edges() ? std::min(options_.max_age_edge, kEdgeShare * inside) : inside;
+  if (!(at_edges < options_.innovation.max_age)) return;
+  eigenlight::shorten_ages(shared.edge(), samples_, {inside, at_edges}, tile, new_age_);
+}
+
+void LightLayer::update_row(const SharedFrame& shared, const Tile& row) {
+  const Planes<3>* correction =
+      correction_.is_open(row.index) ? &correction_.correction() : nullptr;
+  update_tile({coefficients_, learning_, residual_, correction, samples_, old_age_, new_age_,
+               memory_.active(), newborn_},
+              row, {bases_.now, output_});
+  estimate_variance({shared.frame().surface.id, new_age_, variance_.now, options_.young_age}, row,
+                    {output_variance_, young_});
+}
+
+// Nothing is left of what an earlier frame showed there.
+void LightLayer::clear_tile(const Tile& tile) {
+  for (auto& plane : output_) fill_rect(plane, tile, 0.0f);
+  fill_rect(new_age_, tile, 0.0f);
+  bases_.now.clear(tile);
+  fill_rect(output_variance_, tile, 0.0f);
+  fill_rect(young_, tile, std::uint8_t{0});
+}
+
+void LightLayer::fill_young(const SharedFrame& shared) {
+  skipped_guided_ =
+      filter_.fill_young({shared.frame(), old_age_, new_age_, young_}, output_, output_variance_);
+}
+
+void LightLayer::filter(const SharedFrame& shared) {
+  skipped_filter_ = filter_.process({shared.frame(), old_age_, new_age_, young_}, shared.planes(),
+                                    output_, output_variance_);
+}
+
+double LightLayer::mean_rank(const SharedFrame& shared) const {
+  double rank = 0.0, tiles = 0.0;
+  for (int i = 0; i < tiles_.count(); ++i) {
+    if (shared.counts()[i].surface == 0) continue;
+    const auto delta = coefficients_.tile(i).subspan(1);
+    tiles += 1.0;
+    rank += 1.0 + static_cast<double>(delta.size()) -
+            static_cast<double>(std::count(delta.begin(), delta.end(), 0.0f));
+  }
+  return tiles > 0.0 ? rank / tiles : 0.0;
+}
+
+void LightLayer::add_to(const SharedFrame& shared, FrameReport& report) const {
+  PixelCounts all;
+  for (const PixelCounts& count : counts_) all += count;
+  report.new_pixels += all.fresh;
+  report.non_finite_pixels += all.non_finite;
+  report.bounded_pixels += bounded_;
+  report.mean_rank += mean_rank(shared);
+  const auto pixels = static_cast<std::int64_t>(tiles_.extent().pixels());
+  report.skipped_correction += options_.correct ? correction_.skipped() : pixels;
+  report.skipped_guided += skipped_guided_;
+  report.skipped_filter += skipped_filter_;
+}
+
+void LightLayer::save(StateWriter& out) const {
+  out.value("bases", memory_.bases());
+  out.value("bases in use", bases_.now.bases());
+  bases_.now.save(out);
+  out.plane("variance", variance_.now);
+  filter_.save(out);
+  memory_.save(out);
+}
+
+void LightLayer::load(StateReader& in) {
+  const auto expect_bases = [](int found, int wanted) {
+    if (found == wanted) return;
+    throw std::runtime_error("state of 'eigenlight': " + std::to_string(found) +
+                             " bases, expected " + std::to_string(wanted));
+  };
+  int bases = 0;
+  in.value("bases", bases);
+  expect_bases(bases, memory_.bases());
+  in.value("bases in use", bases);
+  if (bases < 1 || bases > memory_.bases()) expect_bases(bases, memory_.active());
+  bases_.now.reshape(bases);
+  bases_.now.load(in);
+  in.plane("variance", variance_.now);
+  filter_.load(in);
+  memory_.load(in);
+}
+
+}  // namespace eigenlight

@@ -1,0 +1,114 @@
+// One layer of light: its history, and the steps that follow it.
+#pragma once
+
+#include "frame/ping_pong.h"
+#include "frame/strips.h"
+#include "reproject/basis_field.h"
+#include "temporal/bases/light_memory.h"
+#include "temporal/eigen/output_filter.h"
+#include "temporal/eigen/shared_frame.h"
+
+namespace eigenlight {
+
+/// Everything that a layer of light has of its own: bases and ages, the variance of its noise, the
+/// statistics of its coefficients, the firefly bound, the correction, and the filter of its output.
+/// Calls come in the order of the declarations, once a frame.
+class LightLayer {
+ public:
+  /// `index`: which of FrameInput::lights. Throws std::invalid_argument on a bad size or option.
+  LightLayer(int index, const DenoiserOptions& options, const EigenOptions& parts);
+
+  // While the frame's surfaces are read.
+
+  /// Takes in the geometry of two rows, for the cells of the correction.
+  void place_cells(const SharedFrame& shared, const Rect& rows) {
+    if (options_.correct) correction_.place(shared.frame().surface, rows);
+  }
+
+  // warp: history is brought to this frame, and the inner products of its tiles are summed.
+
+  void start_warp(const SharedFrame& shared);
+  void warp_row(const TapSegment& taps, const Tile& row);
+  /// Forgets the history of a row of an empty tile.
+  void clear_row(const Rect& row) { bases_.now.clear(row); }
+  /// Copies the ages of a row's history.
+  void read_ages(const Rect& row) { bases_.now.copy_ages(row, old_age_); }
+  void sum_products(const SharedFrame& shared, const Strip& band);
+  void finish_warp(const SharedFrame& shared);
+  [[nodiscard]] const Plane<float>& old_age() const { return old_age_; }
+
+  /// resample: where the mean of the extra samples goes, until predict().
+  [[nodiscard]] Planes<3>& extra_mean() { return residual_; }
+
+  /// project: coefficients of the bases.
+  void project();
+  /// predict: the light that history foresees, and what the samples differ from it by. Band by
+  /// band, so that each part finds in the cache what the part before it left: samples are merged,
+  /// light is predicted, fireflies are counted, and so are the blocks of the correction.
+  void predict(const SharedFrame& shared, bool resampled);
+  /// bound: fireflies are scaled back.
+  void bound(const SharedFrame& shared);
+  /// correct: what neighbors agree on and no basis explains.
+  void correct(const SharedFrame& shared);
+  /// learn: statistics of the coefficients, and whether a basis is born.
+  void learn();
+  /// update: the innovation test sets ages, and the bases take the frame in.
+  void update(const SharedFrame& shared);
+
+  // filter: from the estimate to the picture.
+
+  void fill_young(const SharedFrame& shared);
+  [[nodiscard]] std::span<const std::uint8_t> find_noisy(const SharedFrame& shared) {
+    return filter_.find_noisy(shared.frame(), output_, output_variance_);
+  }
+  void filter(const SharedFrame& shared);
+
+  /// The picture: radiance over the layer's color.
+  [[nodiscard]] const Planes<3>& output() const { return output_; }
+  [[nodiscard]] const Plane<float>& age() const { return new_age_; }
+  /// Adds what this layer counted in this frame; the shared frame counts surfaces.
+  void add_to(const SharedFrame& shared, FrameReport& report) const;
+
+  void save(StateWriter& out) const;
+  void load(StateReader& in);
+
+ private:
+  [[nodiscard]] CorrectionInputs correction_inputs(const SharedFrame& shared) const;
+  [[nodiscard]] float longest_age(const Tile& tile) const;
+  void shorten_ages(const SharedFrame& shared, const Tile& tile);
+  void make_room(int bases);
+  void test_tile(const SharedFrame& shared, const Tile& tile);
+  void update_row(const SharedFrame& shared, const Tile& row);
+  void clear_tile(const Tile& tile);
+  [[nodiscard]] double mean_rank(const SharedFrame& shared) const;
+
+  int index_;
+  EigenOptions options_;
+  TileGrid tiles_;  // of coefficients
+
+  // History. `before` is that of the frame before, `now` the same brought to this one, where the
+  // frame is then taken in.
+  PingPong<BasisField> bases_;
+  PingPong<Plane<float>> variance_;  // of one frame's luminance
+  LightMemory memory_;
+
+  FireflyBound fireflies_;
+  Correction correction_;
+  OutputFilter filter_;
+  CoefficientField coefficients_, learning_;
+  PerTile<TileSums> sums_;
+  double corrected_share_ = 0.0;  // of the pixels with history
+  int newborn_ = 0;               // basis that is born in this frame, or 0
+
+  PerTile<PixelCounts> counts_;  // fresh and non-finite ones
+  std::int64_t bounded_ = 0, skipped_guided_ = 0, skipped_filter_ = 0;
+
+  // This frame's light, extra samples included, until predict() takes from it what history expects.
+  Planes<3> residual_;
+  Plane<float> innovation_, expected_;  // luminance of the residual, and of the prediction
+  Plane<float> samples_, old_age_, new_age_, output_variance_;
+  Plane<std::uint8_t> young_;
+  Planes<3> output_;
+};
+
+}  // namespace eigenlight
