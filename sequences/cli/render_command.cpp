@@ -122,7 +122,9 @@ int RenderJob::run() {
   Scene scene = load_scene_and_say();
   const RunDescription description = describe(settings_, plan_, scene);
   const auto animation = make_flythrough(scene, plan_.perturbation, plan_.render.extent);
-  denoiser_ = make_denoiser(plan_.denoiser, {plan_.render.extent, plan_.bases, plan_.without});
+  denoiser_ = make_denoiser(
+      plan_.denoiser,
+      {.extent = plan_.render.extent, .bases = plan_.bases, .without = plan_.without});
   directory_ = std::make_unique<RunDirectory>(settings_.directory, to_json_text(description));
   if (settings_.resume) {
     position_ = directory_->resume(plan_.frames, *denoiser_);

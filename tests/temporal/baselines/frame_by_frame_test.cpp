@@ -77,13 +77,15 @@ TEST(Methods, RunWithoutEachOfTheirPartsAndRefuseOthers) {
   for (const Method& method : methods()) {
     for (const Part& part : method.parts) {
       AnalyticSource source({});
-      const auto denoiser = make_denoiser(method.name, {{64, 36}, 3, {std::string(part.name)}});
+      const auto denoiser =
+          make_denoiser(method.name, {.extent = {64, 36}, .without = {std::string(part.name)}});
       while (denoiser->step(source) != nullptr) {
         ASSERT_TRUE(std::isfinite(denoiser->report().mean_rank)) << part.name;
       }
       EXPECT_FALSE(part.what.empty());
     }
-    EXPECT_THROW((void)make_denoiser(method.name, {{8, 8}, 2, {"nothing"}}), std::invalid_argument);
+    EXPECT_THROW((void)make_denoiser(method.name, {.extent = {8, 8}, .without = {"nothing"}}),
+                 std::invalid_argument);
   }
 }
 
