@@ -3,7 +3,7 @@
 
 #include "reproject/basis_field.h"
 #include "reproject/surface_history.h"
-#include "temporal/bases/light_memory.h"
+#include "temporal/bases/coefficient_history.h"
 #include "temporal/denoiser.h"
 
 namespace eigenlight {
@@ -50,7 +50,7 @@ struct EigenState {
   SurfaceHistory surfaces;
   BasisField field;
   Plane<float> variance, shown;
-  LightMemory memory;
+  CoefficientHistory memory;
 };
 
 }  // namespace eigenlight

@@ -19,7 +19,7 @@ TileSums window_sums(std::span<const TileSums> sums, const TileGrid& grid, int i
       TileSums part = sums[static_cast<std::size_t>(y * grid.columns() + x)];
       for (double& g : part.gram) g *= weight;
       for (double& d : part.innovation) d *= weight;
-      for (auto* squares : {&part.spread, &part.lean, &part.reach}) {
+      for (auto* squares : {&part.scatter_rr, &part.scatter_r0, &part.scatter_00}) {
         for (double& s : *squares) s *= weight * weight;
       }
       part.pixels *= weight;
@@ -65,7 +65,7 @@ Solution solve(const TileSums& sums, int bases) {
   SmallVector scatter(rank);
   for (int a = 0; a < rank; ++a) {
     const int k = used[static_cast<std::size_t>(a)];
-    scatter[a] = sums.scatter(static_cast<std::size_t>(k), delta[0]);
+    scatter[a] = sums.innovation_variance(static_cast<std::size_t>(k), delta[0]);
   }
   for (int a = 0; a < rank; ++a) {
     const int k = used[static_cast<std::size_t>(a)];

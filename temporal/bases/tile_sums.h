@@ -30,9 +30,9 @@ inline constexpr float kOutlier = 8.0f;
 struct TileSums {
   std::array<double, kMaxBases*(kMaxBases + 1) / 2> gram{};  ///< <V_i, V_j>, packed
   std::array<double, kMaxBases> innovation{};                ///< <V_i, r>
-  std::array<double, kMaxBases> spread{};                    ///< sum_p m^2 (V_i . r)^2
-  std::array<double, kMaxBases> lean{};                      ///< sum_p m^2 (V_i . r) (V_i . V_0)
-  std::array<double, kMaxBases> reach{};                     ///< sum_p m^2 (V_i . V_0)^2
+  std::array<double, kMaxBases> scatter_rr{};                ///< sum_p m^2 (V_i . r)^2
+  std::array<double, kMaxBases> scatter_r0{};                ///< sum_p m^2 (V_i . r) (V_i . V_0)
+  std::array<double, kMaxBases> scatter_00{};                ///< sum_p m^2 (V_i . V_0)^2
   double pixels = 0.0;                                       ///< with m > 0
   double outliers = 0.0;                                     ///< of them, held back
 
@@ -41,7 +41,7 @@ struct TileSums {
   ///   sum_p m^2 (V_i . (r - delta V_0))^2 / (1 - 3 h),   h = sum_p (m V_0 . V_0)^2 / <V_0, V_0>^2.
   /// 1 / h pixels' worth have 1 / h - 1 degrees of freedom, and the last factor is the variance of
   /// Student's t. With no more than three of them it is the spread, about a gain of 1.
-  [[nodiscard]] double scatter(std::size_t i, double delta) const;
+  [[nodiscard]] double innovation_variance(std::size_t i, double delta) const;
 };
 
 /// What the sums are taken over.

@@ -86,7 +86,7 @@ Pixels LoadPixels(const SumInputs& in, const Block& block, int x, int y, bool is
 // Sums of a few rows, lane by lane; those of TileSums.
 struct LaneSums {
   VF gram[kMaxBases * (kMaxBases + 1) / 2];
-  VF innovation[kMaxBases], spread[kMaxBases], lean[kMaxBases], reach[kMaxBases];
+  VF innovation[kMaxBases], scatter_rr[kMaxBases], scatter_r0[kMaxBases], scatter_00[kMaxBases];
 };
 
 // Calls visit(lane sum, sum) for all of `active` bases.
@@ -98,9 +98,9 @@ void ForEachSum(int active, LaneSums& lanes, TileSums& sums, const Visit& visit)
       visit(lanes.gram[packed(k, j)], sums.gram[static_cast<std::size_t>(packed(k, j))]);
     }
     visit(lanes.innovation[j], sums.innovation[at]);
-    visit(lanes.spread[j], sums.spread[at]);
-    visit(lanes.lean[j], sums.lean[at]);
-    visit(lanes.reach[j], sums.reach[at]);
+    visit(lanes.scatter_rr[j], sums.scatter_rr[at]);
+    visit(lanes.scatter_r0[j], sums.scatter_r0[at]);
+    visit(lanes.scatter_00[j], sums.scatter_00[at]);
   }
 }
 
@@ -115,9 +115,9 @@ void AddPixels(const Pixels& pixels, const Block& block, int active, LaneSums& s
     const auto add = [](VF value, VF& sum) { sum = hn::Add(sum, value); };
     const auto add_product = [](VF a, VF b, VF& sum) { sum = hn::MulAdd(a, b, sum); };
     add(weighted, sums.innovation[j]);
-    add_product(weighted, weighted, sums.spread[j]);
-    add_product(weighted, along, sums.lean[j]);
-    add_product(along, along, sums.reach[j]);
+    add_product(weighted, weighted, sums.scatter_rr[j]);
+    add_product(weighted, along, sums.scatter_r0[j]);
+    add_product(along, along, sums.scatter_00[j]);
     add(along, sums.gram[packed(0, j)]);
     for (int k = 1; k <= j; ++k) {
       Color other;
@@ -184,19 +184,20 @@ TileSums& TileSums::operator+=(const TileSums& other) {
   };
   add(gram, other.gram);
   add(innovation, other.innovation);
-  add(spread, other.spread);
-  add(lean, other.lean);
-  add(reach, other.reach);
+  add(scatter_rr, other.scatter_rr);
+  add(scatter_r0, other.scatter_r0);
+  add(scatter_00, other.scatter_00);
   pixels += other.pixels;
   outliers += other.outliers;
   return *this;
 }
 
-double TileSums::scatter(std::size_t i, double delta) const {
-  const double freedom = 1.0 - 3.0 * reach[0] / (gram[0] * gram[0]);
-  if (!(freedom > 0.0)) return spread[i];
+double TileSums::innovation_variance(std::size_t i, double delta) const {
+  const double freedom = 1.0 - 3.0 * scatter_00[0] / (gram[0] * gram[0]);
+  if (!(freedom > 0.0)) return scatter_rr[i];
   // The terms cancel where the gain explains all: rounding may leave less than nothing.
-  return std::max(spread[i] + delta * (delta * reach[i] - 2.0 * lean[i]), 0.0) / freedom;
+  return std::max(scatter_rr[i] + delta * (delta * scatter_00[i] - 2.0 * scatter_r0[i]), 0.0) /
+         freedom;
 }
 
 }  // namespace eigenlight

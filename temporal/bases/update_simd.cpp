@@ -17,8 +17,8 @@ using VF = hn::Vec<F>;
 using MF = hn::Mask<F>;
 
 struct Row {
-  CoefficientRows coefficient;  // c; c_0 is the gain
-  CoefficientRows learning;     // q
+  CoefficientRows coefficient;     // c; c_0 is the gain
+  CoefficientRows learning_rates;  // q
 };
 
 // A vector of pixels from column x on of row y, the i-th of its tile. Lanes behind the last pixel
@@ -49,9 +49,10 @@ struct Step {
 Step FindStep(const UpdateInputs& in, const Place& at, const Row& row) {
   const F d;
   const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-  VF h = hn::Load(d, row.learning[0] + at.i);
+  VF h = hn::Load(d, row.learning_rates[0] + at.i);
   for (int k = 1; k < in.active; ++k) {
-    h = hn::MulAdd(hn::Load(d, row.coefficient[k] + at.i), hn::Load(d, row.learning[k] + at.i), h);
+    h = hn::MulAdd(hn::Load(d, row.coefficient[k] + at.i),
+                   hn::Load(d, row.learning_rates[k] + at.i), h);
   }
   // M is positive definite, so h >= 1 / M_00 = 1 at tile centers; interpolation may fall short.
   h = hn::IfThenElse(hn::Gt(h, one), h, one);
@@ -76,13 +77,13 @@ VF UpdateBases(const UpdateInputs& in, const Step& step, VF residual, VF correct
   const auto line = [&](int k) { return block + kBlock * bases.line_of(c, k); };
   VF move = hn::IfThenElseZero(step.usable, hn::Mul(step.weight, residual));
   if (in.newborn == 0) move = hn::MulAdd(correction, step.leverage, move);
-  const auto learning = [&](int k) { return hn::Load(d, row.learning[k] + at.i); };
+  const auto learning_rates = [&](int k) { return hn::Load(d, row.learning_rates[k] + at.i); };
   const auto coefficient = [&](int k) { return hn::Load(d, row.coefficient[k] + at.i); };
   const auto old = [&](int k) { return hn::IfThenElseZero(step.known, hn::Load(d, line(k))); };
-  VF estimate = hn::MulAdd(learning(0), move, hn::Mul(coefficient(0), old(0)));
+  VF estimate = hn::MulAdd(learning_rates(0), move, hn::Mul(coefficient(0), old(0)));
   hn::Store(estimate, d, line(0));
   for (int k = 1; k < in.active; ++k) {
-    const VF value = hn::MulAdd(learning(k), move, old(k));
+    const VF value = hn::MulAdd(learning_rates(k), move, old(k));
     hn::Store(value, d, line(k));
     estimate = hn::MulAdd(coefficient(k), value, estimate);
   }
@@ -114,7 +115,7 @@ void UpdateTile(const UpdateInputs& in, const Rect& tile, const UpdateOutputs& o
   for (int y = tile.y0; y < tile.y1; ++y) {
     const Rect segment{tile.x0, y, tile.x1, y + 1};
     in.coefficients.rows(segment, in.active, row.coefficient);
-    in.learning.rows(segment, in.active, row.learning);
+    in.learning_rates.rows(segment, in.active, row.learning_rates);
     for (int x = tile.x0; x < tile.x1; x += lanes) {
       UpdateVector(in, {x, y, x - tile.x0, hn::FirstN(d, static_cast<std::size_t>(tile.x1 - x))},
                    row, out);

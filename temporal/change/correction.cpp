@@ -49,11 +49,11 @@ Correction::Correction(Extent extent, const CorrectionOptions& options, const Ta
   options.validate();
 }
 
-void Correction::place(const GBuffer& surface, const Rect& area) {
+void Correction::read_geometry(const GBuffer& surface, const Rect& area) {
   for_needed_cells(area, [&](const Tile& cells) { place_cells(surface, cells, cells_); });
 }
 
-void Correction::count(const CorrectionInputs& in, const Rect& area) {
+void Correction::count_blocks(const CorrectionInputs& in, const Rect& area) {
   for (int y = area.y0; y < area.y1; y += kResidualBlock) {
     const Rect row{area.x0, y, area.x1, std::min(y + kResidualBlock, area.y1)};
     const int first = y / kResidualBlock * block_grid_.columns() + area.x0 / kResidualBlock;
@@ -80,7 +80,7 @@ void Correction::for_needed_cells(const Rect& area, const Body& body) const {
   }
 }
 
-double Correction::process(const CorrectionInputs& in, Plane<float>& innovation) {
+double Correction::smooth(const CorrectionInputs& in, Plane<float>& innovation) {
   std::swap(open_, was_open_);
   std::swap(loaded_, was_loaded_);
   std::fill(loaded_.begin(), loaded_.end(), std::uint8_t{0});

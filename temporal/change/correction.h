@@ -39,15 +39,15 @@ class Correction {
   /// one), for the cells that the last frame needed, while it is in the cache. To be called for all
   /// of the image before count(), in any order and on any thread (apart: cells are written up to 16
   /// pixels beside the area).
-  void place(const GBuffer& surface, const Rect& area);
+  void read_geometry(const GBuffer& surface, const Rect& area);
   /// Takes in the pixels of `area`, one or more blocks of 8 x 8 side by side: their blocks are
   /// tested, and cells are filled that the last frame needed. To be called for all of the image
   /// before process(), as place(); again for blocks that change.
-  void count(const CorrectionInputs& in, const Rect& area);
+  void count_blocks(const CorrectionInputs& in, const Rect& area);
   /// Leaves what is to be added to the prediction in correction(), and subtracts its luminance from
   /// `innovation`, which may be that of the inputs. Returns the share of confirmed pixels corrected
   /// by more than half.
-  double process(const CorrectionInputs& in, Plane<float>& innovation);
+  double smooth(const CorrectionInputs& in, Plane<float>& innovation);
   /// Zero where the prediction lacks nothing.
   [[nodiscard]] const Planes<3>& correction() const { return correction_; }
   /// Whether the last frame may have corrected anything in a tile of the coefficients' grid.

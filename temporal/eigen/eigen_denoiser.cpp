@@ -16,12 +16,12 @@ constexpr int kCellRows = 2;
 
 }  // namespace
 
-EigenDenoiser::EigenDenoiser(const DenoiserOptions& options, const EigenOptions& parts)
-    : options_(parts), shared_(options.extent, parts) {
-  parts.validate();
+EigenDenoiser::EigenDenoiser(const DenoiserOptions& options, const EigenOptions& tuning)
+    : options_(tuning), shared_(options.extent, tuning) {
+  tuning.validate();
   EL_CHECK(options.layers >= 1 && options.layers <= kMaxLights, "layers {}: expected 1 to {}",
            options.layers, kMaxLights);
-  for (int i = 0; i < options.layers; ++i) layers_.emplace_back(i, options, parts);
+  for (int i = 0; i < options.layers; ++i) layers_.emplace_back(i, options, tuning);
   if (options.layers > 1) lowest_age_ = Plane<float>(options.extent);
   noisy_.resize(static_cast<std::size_t>(stage_tiles(options.extent).count()));
 }

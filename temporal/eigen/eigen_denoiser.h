@@ -18,7 +18,7 @@ namespace eigenlight {
 class EigenDenoiser final : public Denoiser {
  public:
   /// Throws std::invalid_argument on a bad size, option, or number of bases or layers.
-  explicit EigenDenoiser(const DenoiserOptions& options, const EigenOptions& parts = {});
+  explicit EigenDenoiser(const DenoiserOptions& options, const EigenOptions& tuning = {});
 
   [[nodiscard]] const Planes<3>* step(FrameSource& source) override;
   [[nodiscard]] int layers() const { return static_cast<int>(layers_.size()); }

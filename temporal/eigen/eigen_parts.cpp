@@ -1,7 +1,7 @@
-#include "temporal/eigen/eigen_parts.h"
-
 #include <algorithm>
 #include <array>
+
+#include "temporal/eigen/eigen_parts.h"
 
 namespace eigenlight {
 namespace {
@@ -62,15 +62,15 @@ std::span<const Part> eigen_parts() {
 }
 
 std::unique_ptr<Denoiser> make_eigen_denoiser(const DenoiserOptions& options) {
-  EigenOptions parts;
+  EigenOptions tuning;
   DenoiserOptions used = options;
   for (const std::string& name : options.without) {
     const auto found = std::find_if(kSwitches.begin(), kSwitches.end(),
                                     [&](const Switch& entry) { return entry.part.name == name; });
     EL_CHECK(found != kSwitches.end(), "eigenlight has no part '{}'", name);
-    found->turn_off(parts, used.bases);
+    found->turn_off(tuning, used.bases);
   }
-  return std::make_unique<EigenDenoiser>(used, parts);
+  return std::make_unique<EigenDenoiser>(used, tuning);
 }
 
 }  // namespace eigenlight

@@ -29,18 +29,18 @@ PingPong<BasisField> two_fields(Extent extent, int bases) {
 
 }  // namespace
 
-LightLayer::LightLayer(int index, const DenoiserOptions& options, const EigenOptions& parts)
+LightLayer::LightLayer(int index, const DenoiserOptions& options, const EigenOptions& tuning)
     : index_(index),
-      options_(parts),
+      options_(tuning),
       tiles_(options.extent, kCoefficientTile, kCoefficientTile),
       bases_(two_fields(options.extent, options.bases)),
       variance_(two_planes(options.extent)),
-      memory_(options.extent, options.bases),
-      fireflies_(options.extent, parts.fireflies),
-      correction_(options.extent, parts.correction, parts.taps),
-      filter_(options.extent, parts),
+      coefficient_history_(options.extent, options.bases),
+      fireflies_(options.extent, tuning.fireflies),
+      correction_(options.extent, tuning.correction, tuning.taps),
+      filter_(options.extent, tuning),
       coefficients_(options.extent, options.bases),
-      learning_(options.extent, options.bases),
+      learning_rates_(options.extent, options.bases),
       sums_(tiles_),
       counts_(tiles_),
       residual_(make_planes<3>(options.extent)),
@@ -56,8 +56,8 @@ LightLayer::LightLayer(int index, const DenoiserOptions& options, const EigenOpt
 void LightLayer::start_warp(const SharedFrame& shared) {
   sums_.fill({});
   if (shared.is_cut()) {
-    memory_.reset();
-    bases_.now.reshape(memory_.active());
+    coefficient_history_.reset();
+    bases_.now.reshape(coefficient_history_.active());
     bases_.now.clear();
     variance_.now.fill(0.0f);
   }
@@ -76,7 +76,7 @@ void LightLayer::warp_row(const TapSegment& taps, const Tile& row) {
 
 void LightLayer::sum_products(const SharedFrame& shared, const Strip& band) {
   const Planes<3>& light = shared.frame().lights[static_cast<std::size_t>(index_)].radiance;
-  const SumInputs history{bases_.now, light, variance_.now, memory_.active()};
+  const SumInputs history{bases_.now, light, variance_.now, coefficient_history_.active()};
   for_each_part(tiles_, band, [&](const Tile& part) {
     if (!shared.is_empty(part)) accumulate_tile(history, part, sums_[part]);
   });
@@ -84,15 +84,16 @@ void LightLayer::sum_products(const SharedFrame& shared, const Strip& band) {
 
 void LightLayer::finish_warp(const SharedFrame& shared) {
   const Planes<3>& light = shared.frame().lights[static_cast<std::size_t>(index_)].radiance;
-  const SumInputs history{bases_.now, light, variance_.now, memory_.active()};
+  const SumInputs history{bases_.now, light, variance_.now, coefficient_history_.active()};
   for_each_tile(tiles_, [&](const Tile& tile) { admit_outliers(history, tile, sums_[tile]); });
 }
 
 void LightLayer::project() {
   if (options_.project) {
-    solve_coefficients(sums_.values(), memory_.expected(), options_.shrink, coefficients_);
+    solve_coefficients(sums_.values(), coefficient_history_.expected(), options_.shrink,
+                       coefficients_);
   }
-  coefficients_.set_used(memory_.active());
+  coefficients_.set_used(coefficient_history_.active());
 }
 
 CorrectionInputs LightLayer::correction_inputs(const SharedFrame& shared) const {
@@ -113,14 +114,14 @@ void LightLayer::predict(const SharedFrame& shared, bool resampled) {
       });
       fireflies_.count({expected_, old_age_, samples_, variance_.now}, {residual_, innovation_},
                        band.area);
-      if (options_.correct) correction_.count(correction_inputs(shared), band.area);
+      if (options_.correct) correction_.count_blocks(correction_inputs(shared), band.area);
     });
   });
 }
 
 void LightLayer::bound(const SharedFrame& shared) {
   const auto count_again = [&](const Rect& block) {
-    if (options_.correct) correction_.count(correction_inputs(shared), block);
+    if (options_.correct) correction_.count_blocks(correction_inputs(shared), block);
   };
   bounded_ = fireflies_.bound({expected_, old_age_, samples_, variance_.now},
                               {residual_, innovation_}, count_again);
@@ -128,16 +129,16 @@ void LightLayer::bound(const SharedFrame& shared) {
 
 void LightLayer::correct(const SharedFrame& shared) {
   corrected_share_ =
-      options_.correct ? correction_.process(correction_inputs(shared), innovation_) : 0.0;
+      options_.correct ? correction_.smooth(correction_inputs(shared), innovation_) : 0.0;
 }
 
 void LightLayer::learn() {
-  memory_.advance(coefficients_, learning_);
-  newborn_ = corrected_share_ > options_.birth_share ? memory_.free_slot() : 0;
+  coefficient_history_.learn(coefficients_, learning_rates_);
+  newborn_ = corrected_share_ > options_.birth_share ? coefficient_history_.free_slot() : 0;
 }
 
 void LightLayer::update(const SharedFrame& shared) {
-  make_room(std::max(memory_.active(), newborn_ + 1));
+  make_room(std::max(coefficient_history_.active(), newborn_ + 1));
   for_each_strip(tiles_, [&](const Strip& strip) {
     innovation_tile({innovation_, old_age_, samples_}, options_.innovation, strip.area,
                     {new_age_, variance_.now});
@@ -146,8 +147,8 @@ void LightLayer::update(const SharedFrame& shared) {
       if (!shared.is_empty(row)) update_row(shared, row);
     });
   });
-  if (newborn_ > 0) memory_.born(newborn_);
-  for (const int k : memory_.retire()) bases_.now.clear_basis(k);
+  if (newborn_ > 0) coefficient_history_.born(newborn_);
+  for (const int k : coefficient_history_.retire()) bases_.now.clear_basis(k);
 }
 
 // In place: memory that is overwritten need not be fetched first. Only a birth moves the bases.
@@ -187,8 +188,8 @@ void LightLayer::shorten_ages(const SharedFrame& shared, const Tile& tile) {
 void LightLayer::update_row(const SharedFrame& shared, const Tile& row) {
   const Planes<3>* correction =
       correction_.is_open(row.index) ? &correction_.correction() : nullptr;
-  update_tile({coefficients_, learning_, residual_, correction, samples_, old_age_, new_age_,
-               memory_.active(), newborn_},
+  update_tile({coefficients_, learning_rates_, residual_, correction, samples_, old_age_, new_age_,
+               coefficient_history_.active(), newborn_},
               row, {bases_.now, output_});
   estimate_variance({shared.frame().surface.id, new_age_, variance_.now, options_.young_age}, row,
                     {output_variance_, young_});
@@ -239,12 +240,12 @@ void LightLayer::add_to(const SharedFrame& shared, FrameReport& report) const {
 }
 
 void LightLayer::save(StateWriter& out) const {
-  out.value("bases", memory_.bases());
+  out.value("bases", coefficient_history_.bases());
   out.value("bases in use", bases_.now.bases());
   bases_.now.save(out);
   out.plane("variance", variance_.now);
   filter_.save(out);
-  memory_.save(out);
+  coefficient_history_.save(out);
 }
 
 void LightLayer::load(StateReader& in) {
@@ -255,14 +256,15 @@ void LightLayer::load(StateReader& in) {
   };
   int bases = 0;
   in.value("bases", bases);
-  expect_bases(bases, memory_.bases());
+  expect_bases(bases, coefficient_history_.bases());
   in.value("bases in use", bases);
-  if (bases < 1 || bases > memory_.bases()) expect_bases(bases, memory_.active());
+  if (bases < 1 || bases > coefficient_history_.bases())
+    expect_bases(bases, coefficient_history_.active());
   bases_.now.reshape(bases);
   bases_.now.load(in);
   in.plane("variance", variance_.now);
   filter_.load(in);
-  memory_.load(in);
+  coefficient_history_.load(in);
 }
 
 }  // namespace eigenlight

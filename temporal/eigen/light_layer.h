@@ -4,7 +4,7 @@
 #include "frame/ping_pong.h"
 #include "frame/strips.h"
 #include "reproject/basis_field.h"
-#include "temporal/bases/light_memory.h"
+#include "temporal/bases/coefficient_history.h"
 #include "temporal/eigen/output_filter.h"
 #include "temporal/eigen/shared_frame.h"
 
@@ -16,13 +16,13 @@ namespace eigenlight {
 class LightLayer {
  public:
   /// `index`: which of FrameInput::lights. Throws std::invalid_argument on a bad size or option.
-  LightLayer(int index, const DenoiserOptions& options, const EigenOptions& parts);
+  LightLayer(int index, const DenoiserOptions& options, const EigenOptions& tuning);
 
   // While the frame's surfaces are read.
 
   /// Takes in the geometry of two rows, for the cells of the correction.
   void place_cells(const SharedFrame& shared, const Rect& rows) {
-    if (options_.correct) correction_.place(shared.frame().surface, rows);
+    if (options_.correct) correction_.read_geometry(shared.frame().surface, rows);
   }
 
   // warp: history is brought to this frame, and the inner products of its tiles are summed.
@@ -90,12 +90,12 @@ class LightLayer {
   // frame is then taken in.
   PingPong<BasisField> bases_;
   PingPong<Plane<float>> variance_;  // of one frame's luminance
-  LightMemory memory_;
+  CoefficientHistory coefficient_history_;
 
   FireflyBound fireflies_;
   Correction correction_;
   OutputFilter filter_;
-  CoefficientField coefficients_, learning_;
+  CoefficientField coefficients_, learning_rates_;
   PerTile<TileSums> sums_;
   double corrected_share_ = 0.0;  // of the pixels with history
   int newborn_ = 0;               // basis that is born in this frame, or 0

@@ -45,7 +45,7 @@ struct Stages {
         history(extent, setting.bases),
         warped(extent, setting.bases),
         coefficients(extent, setting.bases),
-        learning(extent, setting.bases),
+        learning_rates(extent, setting.bases),
         sums(static_cast<std::size_t>(tiles.count())),
         residual(make_planes<3>(extent)),
         correction(make_planes<3>(extent)),
@@ -117,7 +117,7 @@ struct Stages {
   }
   void update() {
     for_each_tile(tiles, [&](const Tile& tile) {
-      update_tile({coefficients, learning, residual, &correction, samples, age, new_age,
+      update_tile({coefficients, learning_rates, residual, &correction, samples, age, new_age,
                    history.bases(), 0},
                   tile, {warped, estimate});
     });
@@ -128,7 +128,7 @@ struct Stages {
   Extent extent;
   TileGrid tiles;
   BasisField history, warped;
-  CoefficientField coefficients, learning;
+  CoefficientField coefficients, learning_rates;
   std::vector<TileSums> sums;
   Planes<3> residual, correction, estimate;
   Plane<float> variance, warped_variance, predicted_variance, samples, innovation, expected, age,

@@ -21,11 +21,11 @@ inline TileSums window(std::span<const TileSums> sums, const TileGrid& grid, int
     const double w = (2.0 - dx) * (2.0 - dy) / 4.0;
     const TileSums& part = sums[static_cast<std::size_t>(i)];
     for (std::size_t g = 0; g < total.gram.size(); ++g) total.gram[g] += w * part.gram[g];
-    for (std::size_t k = 0; k < total.spread.size(); ++k) {
+    for (std::size_t k = 0; k < total.scatter_rr.size(); ++k) {
       total.innovation[k] += w * part.innovation[k];
-      total.spread[k] += w * w * part.spread[k];
-      total.lean[k] += w * w * part.lean[k];
-      total.reach[k] += w * w * part.reach[k];
+      total.scatter_rr[k] += w * w * part.scatter_rr[k];
+      total.scatter_r0[k] += w * w * part.scatter_r0[k];
+      total.scatter_00[k] += w * w * part.scatter_00[k];
     }
   }
   return total;
@@ -57,11 +57,11 @@ inline std::vector<std::vector<double>> inverse(std::vector<std::vector<double>>
 }
 
 /// Variance of <V_i, u - V_0> about the gain 1 + delta.
-inline double scatter(const TileSums& total, std::size_t i, double delta) {
-  const double pixels = total.gram[0] * total.gram[0] / total.reach[0];
-  if (pixels <= 3.0) return total.spread[i];
+inline double innovation_variance(const TileSums& total, std::size_t i, double delta) {
+  const double pixels = total.gram[0] * total.gram[0] / total.scatter_00[0];
+  if (pixels <= 3.0) return total.scatter_rr[i];
   const double about =
-      total.spread[i] - 2.0 * delta * total.lean[i] + delta * delta * total.reach[i];
+      total.scatter_rr[i] - 2.0 * delta * total.scatter_r0[i] + delta * delta * total.scatter_00[i];
   return std::max(about, 0.0) * pixels / (pixels - 3.0);
 }
 
@@ -91,7 +91,7 @@ inline std::vector<double> coefficients(const TileSums& total, const Shrinkage& 
   for (std::size_t k = 0; k < n; ++k) {
     double variance = 0.0;
     for (std::size_t i = 0; i < n; ++i) {
-      variance += inverted[k][i] * inverted[k][i] * scatter(total, i, fitted);
+      variance += inverted[k][i] * inverted[k][i] * innovation_variance(total, i, fitted);
     }
     if (delta[k] == 0.0) continue;
     double kept = std::max(0.0, 1.0 - shrinkage.options.noise * variance / (delta[k] * delta[k]));

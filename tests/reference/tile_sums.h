@@ -75,9 +75,9 @@ inline TileSums tile_sums(const SumInputs& in, const Rect& tile) {
           first += static_cast<double>(v.value(x, y, c, j)) * v.value(x, y, c, 0);
         }
         sums.innovation[static_cast<std::size_t>(j)] += m * along;
-        sums.spread[static_cast<std::size_t>(j)] += m * m * along * along;
-        sums.lean[static_cast<std::size_t>(j)] += m * m * along * first;
-        sums.reach[static_cast<std::size_t>(j)] += m * m * first * first;
+        sums.scatter_rr[static_cast<std::size_t>(j)] += m * m * along * along;
+        sums.scatter_r0[static_cast<std::size_t>(j)] += m * m * along * first;
+        sums.scatter_00[static_cast<std::size_t>(j)] += m * m * first * first;
         for (int i = 0; i <= j; ++i) {
           double dot = 0.0;
           for (int c = 0; c < 3; ++c) {

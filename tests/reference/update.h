@@ -28,7 +28,7 @@ inline Updated update(const UpdateInputs& in, const BasisField& old, glm::ivec2 
   for (int k = 0; k < in.active; ++k) {
     const auto at = static_cast<std::size_t>(k);
     c[at] = k == 0 ? 1.0 : coefficient_at(in.coefficients, x, y, k);
-    q[at] = coefficient_at(in.learning, x, y, k);
+    q[at] = coefficient_at(in.learning_rates, x, y, k);
     h += c[at] * q[at];
   }
   h = std::max(h,

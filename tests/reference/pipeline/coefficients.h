@@ -39,11 +39,11 @@ struct Sums {
   explicit Sums(int bases)
       : gram(SmallMatrix::Zero(bases, bases)),
         innovation(SmallVector::Zero(bases)),
-        spread(innovation),
-        lean(innovation),
-        reach(innovation) {}
+        scatter_rr(innovation),
+        scatter_r0(innovation),
+        scatter_00(innovation) {}
   SmallMatrix gram;
-  SmallVector innovation, spread, lean, reach;
+  SmallVector innovation, scatter_rr, scatter_r0, scatter_00;
 };
 
 struct SumScene {
@@ -82,9 +82,9 @@ inline void add_pixel(const SumScene& in, int x, int y, double weight, Sums& sum
     }
     const double first = weight * in.bases.dot(j, 0, x, y);
     sums.innovation[j] += along;
-    sums.spread[j] += along * along;
-    sums.lean[j] += along * first;
-    sums.reach[j] += first * first;
+    sums.scatter_rr[j] += along * along;
+    sums.scatter_r0[j] += along * first;
+    sums.scatter_00[j] += first * first;
     for (int i = 0; i < in.active; ++i) sums.gram(i, j) += weight * in.bases.dot(i, j, x, y);
   }
 }
@@ -119,9 +119,9 @@ inline Sums window_sums(const std::vector<Sums>& tiles, const TileGrid& grid, in
     const Sums& part = tiles[static_cast<std::size_t>(i)];
     total.gram += w * part.gram;
     total.innovation += w * part.innovation;
-    total.spread += w * w * part.spread;
-    total.lean += w * w * part.lean;
-    total.reach += w * w * part.reach;
+    total.scatter_rr += w * w * part.scatter_rr;
+    total.scatter_r0 += w * w * part.scatter_r0;
+    total.scatter_00 += w * w * part.scatter_00;
   }
   return total;
 }
@@ -141,14 +141,15 @@ inline SmallVector solve(const Sums& sums, const SmallVector& expected, double n
   for (int a = 1; a < rank; ++a) gram(a, a) *= 1.0 + 1e-6;
   const SmallMatrix inverse = gram.ldlt().solve(SmallMatrix::Identity(rank, rank));
   const SmallVector found = inverse * SmallVector(sums.innovation(used));
-  const double pixels = first * first / sums.reach[0], gain = found[0];
+  const double pixels = first * first / sums.scatter_00[0], gain = found[0];
   for (int a = 0; a < rank; ++a) {
     double variance = 0.0;
     for (int b = 0; b < rank; ++b) {
       const int k = used[static_cast<std::size_t>(b)];
-      const double about = sums.spread[k] - 2.0 * gain * sums.lean[k] + gain * gain * sums.reach[k];
+      const double about =
+          sums.scatter_rr[k] - 2.0 * gain * sums.scatter_r0[k] + gain * gain * sums.scatter_00[k];
       const double scatter =
-          pixels > 3.0 ? std::max(about, 0.0) * pixels / (pixels - 3.0) : sums.spread[k];
+          pixels > 3.0 ? std::max(about, 0.0) * pixels / (pixels - 3.0) : sums.scatter_rr[k];
       variance += inverse(a, b) * inverse(a, b) * scatter;
     }
     const int k = used[static_cast<std::size_t>(a)];

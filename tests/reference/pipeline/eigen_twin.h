@@ -30,7 +30,7 @@ class EigenTwin {
         bases_(extent),
         memory_(extent, bases),
         coefficients_(kMaxBases, TileValues(extent)),
-        learning_(coefficients_),
+        learning_rates_(coefficients_),
         r_(extent),
         new_age_(extent),
         picture_(extent),
@@ -44,7 +44,7 @@ class EigenTwin {
     predict();
     bound(options_.fireflies, r_);
     correct(options_.correction, in.frame, r_);
-    memory_.learn(coefficients_, learning_);
+    memory_.learn(coefficients_, learning_rates_);
     test_innovation(in.frame);
     shorten_ages(in.frame);
     update(in.newborn);
@@ -227,7 +227,7 @@ class EigenTwin {
       double h = 0.0;
       for (std::size_t k = 0; k < static_cast<std::size_t>(active); ++k) {
         c[k] = k == 0 ? 1.0 : coefficients_[k].at(x, y);
-        q[k] = learning_[k].at(x, y);
+        q[k] = learning_rates_[k].at(x, y);
         h += c[k] * q[k];
       }
       h = std::max(h, 1.0);
@@ -317,7 +317,7 @@ class EigenTwin {
   SurfaceHistory surfaces_;
   Bases bases_;
   Memory memory_;
-  TileVectors coefficients_, learning_;  // c and q
+  TileVectors coefficients_, learning_rates_;  // c and q
   Residual r_;
   Image new_age_;
   reference::AtrousImage picture_;

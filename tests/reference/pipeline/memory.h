@@ -1,4 +1,4 @@
-// Twin of LightMemory that takes and gives double; slots are born and retired as it is told.
+// Twin of CoefficientHistory that takes and gives double; slots are born and retired as it is told.
 #pragma once
 
 #include "tests/reference/pipeline/coefficients.h"
@@ -30,7 +30,7 @@ class Memory {
   }
 
   /// R <- lambda R + c c^T with c = (1, delta_1, ...), and q = (R / R_00 + ridge)^-1 c.
-  void learn(TileVectors& coefficients, TileVectors& learning) {
+  void learn(TileVectors& coefficients, TileVectors& learning_rates) {
     const int rank = active();
     for (int tile = 0; tile < static_cast<int>(information_.size()); ++tile) {
       SmallVector c = SmallVector::Zero(bases_);
@@ -46,7 +46,7 @@ class Memory {
       }
       const SmallVector q = m.ldlt().solve(SmallVector(c.head(rank)));
       for (int k = 0; k < kMaxBases; ++k) {
-        learning[static_cast<std::size_t>(k)][tile] = k < rank ? q[k] : 0.0;
+        learning_rates[static_cast<std::size_t>(k)][tile] = k < rank ? q[k] : 0.0;
       }
     }
   }

@@ -25,12 +25,12 @@ void expect_sums_near(const TileSums& found, const TileSums& wanted, int bases) 
     // Cauchy-Schwarz bounds the magnitudes of what went into mixed sums.
     const auto at = static_cast<std::size_t>(j);
     EXPECT_NEAR(found.innovation[at], wanted.innovation[at],
-                kTolerance * std::sqrt(wanted.spread[at] * wanted.pixels) + 1e-300)
+                kTolerance * std::sqrt(wanted.scatter_rr[at] * wanted.pixels) + 1e-300)
         << "basis " << j;
-    EXPECT_NEAR(found.spread[at], wanted.spread[at], kTolerance * wanted.spread[at]);
-    EXPECT_NEAR(found.lean[at], wanted.lean[at],
-                kTolerance * std::sqrt(wanted.spread[at] * wanted.reach[at]));
-    EXPECT_NEAR(found.reach[at], wanted.reach[at], kTolerance * wanted.reach[at]);
+    EXPECT_NEAR(found.scatter_rr[at], wanted.scatter_rr[at], kTolerance * wanted.scatter_rr[at]);
+    EXPECT_NEAR(found.scatter_r0[at], wanted.scatter_r0[at],
+                kTolerance * std::sqrt(wanted.scatter_rr[at] * wanted.scatter_00[at]));
+    EXPECT_NEAR(found.scatter_00[at], wanted.scatter_00[at], kTolerance * wanted.scatter_00[at]);
     for (int i = 0; i <= j; ++i) {
       const auto ii = static_cast<std::size_t>(packed(i, i));
       const auto ij = static_cast<std::size_t>(packed(i, j));
@@ -82,7 +82,7 @@ TEST(TileSums, AddToWhatIsThere) {
   added += once;
   EXPECT_EQ(added.gram[0], 2.0 * once.gram[0]);
   EXPECT_EQ(added.innovation[1], 2.0 * once.innovation[1]);
-  EXPECT_EQ(added.spread[1], 2.0 * once.spread[1]);
+  EXPECT_EQ(added.scatter_rr[1], 2.0 * once.scatter_rr[1]);
   EXPECT_EQ(added.pixels, 2.0 * once.pixels);
 }
 
@@ -99,7 +99,7 @@ TEST(TileSums, LeaveOutWhatCannotBeUsed) {
     accumulate_tile({field, frame.lights[0].radiance, variance}, {0, 0, 5, 3}, sums);
     EXPECT_TRUE(std::isfinite(sums.gram[0]));
     EXPECT_TRUE(std::isfinite(sums.innovation[0]));
-    EXPECT_TRUE(std::isfinite(sums.spread[0]));
+    EXPECT_TRUE(std::isfinite(sums.scatter_rr[0]));
     return sums.pixels;
   };
   for_each_target([&] {

@@ -17,7 +17,7 @@ struct Scene {
   Scene(Extent extent, int bases, int used = 0)
       : field(random_bases(extent, bases, 8)),
         coefficients(extent, bases),
-        learning(extent, bases),
+        learning_rates(extent, bases),
         residual(make_planes<3>(extent)),
         correction(make_planes<3>(extent)),
         samples(extent),
@@ -28,7 +28,7 @@ struct Scene {
     for (int i = 0; i < coefficients.grid().count(); ++i) {
       PixelRandom random(3, i, 0);
       for (float& delta : coefficients.tile(i)) delta = random.between(-0.5f, 0.5f);
-      for (float& q : learning.tile(i)) q = random.between(-0.8f, 0.8f);
+      for (float& q : learning_rates.tile(i)) q = random.between(-0.8f, 0.8f);
     }
     for (int y = 0; y < extent.height; ++y) {
       for (int x = 0; x < extent.width; ++x) fill(x, y);
@@ -56,8 +56,8 @@ struct Scene {
   }
 
   [[nodiscard]] UpdateInputs in() const {
-    return {coefficients, learning, residual, &correction, samples,
-            old_age,      new_age,  active,   newborn};
+    return {coefficients, learning_rates, residual, &correction, samples,
+            old_age,      new_age,        active,   newborn};
   }
   void run() {
     for (int i = 0; i < coefficients.grid().count(); ++i) {
@@ -66,7 +66,7 @@ struct Scene {
   }
 
   BasisField field;
-  CoefficientField coefficients, learning;
+  CoefficientField coefficients, learning_rates;
   Planes<3> residual, correction;
   Plane<float> samples, old_age, new_age;
   int active, newborn = 0;
@@ -120,7 +120,7 @@ TEST(Update, OfSteadyLightIsTheMeanOfAllFrames) {
   Scene scene(extent, 1);
   scene.field = BasisField(extent, 1);
   for (int i = 0; i < scene.coefficients.grid().count(); ++i) {
-    scene.coefficients.tile(i)[0] = scene.learning.tile(i)[0] = 0.0f;
+    scene.coefficients.tile(i)[0] = scene.learning_rates.tile(i)[0] = 0.0f;
   }
   double sum = 0.0;
   for (int n = 1; n <= 50; ++n) {
@@ -141,10 +141,10 @@ TEST(Update, OfSteadyLightIsTheMeanOfAllFrames) {
 
 // h = c . q of a pixel.
 double leverage(const Scene& scene, int x, int y) {
-  double h = reference::coefficient_at(scene.learning, x, y, 0);
+  double h = reference::coefficient_at(scene.learning_rates, x, y, 0);
   for (int k = 1; k < scene.active; ++k) {
     h += reference::coefficient_at(scene.coefficients, x, y, k) *
-         reference::coefficient_at(scene.learning, x, y, k);
+         reference::coefficient_at(scene.learning_rates, x, y, k);
   }
   return h;
 }

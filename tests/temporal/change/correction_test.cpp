@@ -58,9 +58,9 @@ struct Scene {
   // Leaves the corrected prediction.
   double run(Correction& correction) {
     const Rect all{0, 0, innovation.width(), innovation.height()};
-    correction.place(guides.surface, all);
-    correction.count(in(), all);
-    const double share = correction.process(in(), innovation);
+    correction.read_geometry(guides.surface, all);
+    correction.count_blocks(in(), all);
+    const double share = correction.smooth(in(), innovation);
     for (std::size_t c = 0; c < 3; ++c) {
       for (int y = 0; y < prediction[c].height(); ++y) {
         for (int x = 0; x < prediction[c].width(); ++x) {
@@ -198,14 +198,14 @@ TEST(Correction, BlocksThatChangeAreCountedAgain) {
     changed.set_residual(p.x, p.y, 1e6f);
     wanted.set_residual(p.x, p.y, std::nanf(""));
   }
-  again.count(changed.in(), {0, 0, extent.width, extent.height});
+  again.count_blocks(changed.in(), {0, 0, extent.width, extent.height});
   for (const glm::ivec2 p : {glm::ivec2{5, 9}, {6, 9}, {70, 40}, {79, 47}, {190, 106}}) {
     changed.set_residual(p.x, p.y, std::nanf(""));
     const int x = p.x / 8 * 8, y = p.y / 8 * 8;
-    again.count(changed.in(),
-                {x, y, std::min(x + 8, extent.width), std::min(y + 8, extent.height)});
+    again.count_blocks(changed.in(),
+                       {x, y, std::min(x + 8, extent.width), std::min(y + 8, extent.height)});
   }
-  EXPECT_EQ(again.process(changed.in(), changed.innovation), wanted.run(once));
+  EXPECT_EQ(again.smooth(changed.in(), changed.innovation), wanted.run(once));
   EXPECT_TRUE(planes_equal(changed.innovation, wanted.innovation));
 }
 

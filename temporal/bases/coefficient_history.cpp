@@ -1,4 +1,4 @@
-#include "temporal/bases/light_memory.h"
+#include "temporal/bases/coefficient_history.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -26,7 +26,7 @@ int checked(int bases) {
 
 }  // namespace
 
-LightMemory::LightMemory(Extent extent, int bases)
+CoefficientHistory::CoefficientHistory(Extent extent, int bases)
     : bases_(checked(bases)),
       tiles_(TileGrid(extent, kCoefficientTile, kCoefficientTile).count()),
       in_use_(static_cast<std::size_t>(bases)),
@@ -35,7 +35,7 @@ LightMemory::LightMemory(Extent extent, int bases)
   reset();
 }
 
-void LightMemory::reset() {
+void CoefficientHistory::reset() {
   since_birth_ = 0;
   std::fill(in_use_.begin(), in_use_.end(), std::uint8_t{0});
   in_use_[0] = 1;
@@ -43,18 +43,19 @@ void LightMemory::reset() {
   std::fill(expected_.begin(), expected_.end(), 0.0);
 }
 
-int LightMemory::active() const {
+int CoefficientHistory::active() const {
   const auto last = std::find(in_use_.rbegin(), in_use_.rend(), std::uint8_t{1});
   return static_cast<int>(in_use_.rend() - last);
 }
 
-SmallMatrix LightMemory::normalized(int tile) const {
+SmallMatrix CoefficientHistory::normalized(int tile) const {
   const double* values = information_.data() + static_cast<std::size_t>(tile * bases_ * bases_);
   const SmallMatrix r = Eigen::Map<const SmallMatrix>(values, bases_, bases_);
   return r / r(0, 0);
 }
 
-void LightMemory::advance(const CoefficientField& coefficients, CoefficientField& learning) {
+void CoefficientHistory::learn(const CoefficientField& coefficients,
+                               CoefficientField& learning_rates) {
   since_birth_ = std::min(since_birth_ + 1, kBirthInterval);  // runs have no end
   const int rank = active();
   parallel_for(tiles_, [&](int tile) {
@@ -76,7 +77,7 @@ void LightMemory::advance(const CoefficientField& coefficients, CoefficientField
           k > 0 && in_use_[static_cast<std::size_t>(k)] ? r(k, k) / r(0, 0) : 0.0;
     }
     const SmallVector q = m.ldlt().solve(SmallVector(c.head(rank)));
-    const auto out = learning.tile(tile);
+    const auto out = learning_rates.tile(tile);
     std::fill(out.begin(), out.end(), 0.0f);
     for (int k = 0; k < rank; ++k) {
       out[static_cast<std::size_t>(k)] = static_cast<float>(q[k] - (k == 0 ? 1.0 : 0.0));
@@ -84,13 +85,13 @@ void LightMemory::advance(const CoefficientField& coefficients, CoefficientField
   });
 }
 
-int LightMemory::free_slot() const {
+int CoefficientHistory::free_slot() const {
   if (since_birth_ < kBirthInterval) return 0;
   const auto slot = std::find(in_use_.begin(), in_use_.end(), std::uint8_t{0});
   return slot == in_use_.end() ? 0 : static_cast<int>(slot - in_use_.begin());
 }
 
-void LightMemory::born(int k) {
+void CoefficientHistory::born(int k) {
   since_birth_ = 0;
   in_use_[static_cast<std::size_t>(k)] = 1;
   for (int tile = 0; tile < tiles_; ++tile) {
@@ -102,7 +103,7 @@ void LightMemory::born(int k) {
   }
 }
 
-std::vector<int> LightMemory::retire() {
+std::vector<int> CoefficientHistory::retire() {
   std::vector<int> retired;
   for (int k = 1; k < bases_; ++k) {
     if (!in_use_[static_cast<std::size_t>(k)]) continue;
@@ -118,14 +119,14 @@ std::vector<int> LightMemory::retire() {
   return retired;
 }
 
-void LightMemory::save(StateWriter& out) const {
+void CoefficientHistory::save(StateWriter& out) const {
   out.value("frames since birth", since_birth_);
   for (const std::uint8_t used : in_use_) out.value("slot in use", used);
   for (const double value : information_) out.value("information", value);
   for (const double value : expected_) out.value("expected", value);
 }
 
-void LightMemory::load(StateReader& in) {
+void CoefficientHistory::load(StateReader& in) {
   in.value("frames since birth", since_birth_);
   since_birth_ = std::clamp(since_birth_, 0, kBirthInterval);
   bool valid = true;

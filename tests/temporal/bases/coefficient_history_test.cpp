@@ -1,4 +1,4 @@
-#include "temporal/bases/light_memory.h"
+#include "temporal/bases/coefficient_history.h"
 
 #include <gtest/gtest.h>
 
@@ -13,27 +13,27 @@ constexpr Extent kExtent{65, 33};  // 3 x 2 tiles
 
 struct Memory {
   explicit Memory(int bases)
-      : memory(kExtent, bases), coefficients(kExtent, bases), learning(kExtent, bases) {}
+      : memory(kExtent, bases), coefficients(kExtent, bases), learning_rates(kExtent, bases) {}
   // The same coefficients in all tiles; delta[0] is a gain and does not count.
-  void advance(const std::vector<float>& delta) {
+  void learn(const std::vector<float>& delta) {
     for (int i = 0; i < coefficients.grid().count(); ++i) {
       for (std::size_t k = 0; k < delta.size(); ++k) coefficients.tile(i)[k] = delta[k];
     }
-    memory.advance(coefficients, learning);
+    memory.learn(coefficients, learning_rates);
   }
   // q of the last tile.
   [[nodiscard]] double q(std::size_t k) const {
-    const auto tile = learning.tile(learning.grid().count() - 1);
+    const auto tile = learning_rates.tile(learning_rates.grid().count() - 1);
     return static_cast<double>(tile[k]) + (k == 0 ? 1.0 : 0.0);
   }
-  LightMemory memory;
-  CoefficientField coefficients, learning;
+  CoefficientHistory memory;
+  CoefficientField coefficients, learning_rates;
 };
 
-TEST(LightMemory, OfOneBasisIsTheRunningMean) {
+TEST(CoefficientHistory, OfOneBasisIsTheRunningMean) {
   Memory m(3);
   for (int frame = 0; frame < 100; ++frame) {
-    m.advance({0.7f, 0.0f, 0.0f});
+    m.learn({0.7f, 0.0f, 0.0f});
     EXPECT_EQ(m.memory.active(), 1);
     EXPECT_NEAR(m.q(0), 1.0, 1e-7);
     EXPECT_EQ(m.q(1), 0.0);
@@ -41,9 +41,9 @@ TEST(LightMemory, OfOneBasisIsTheRunningMean) {
 }
 
 // R, M and q = M^-1 c written out, for a basis that is born after ten frames.
-TEST(LightMemory, SolvesForQAsTheTwin) {
+TEST(CoefficientHistory, SolvesForQAsTheTwin) {
   Memory m(2);
-  for (int frame = 0; frame < 10; ++frame) m.advance({0, 0});
+  for (int frame = 0; frame < 10; ++frame) m.learn({0, 0});
   ASSERT_EQ(m.memory.free_slot(), 1);
   m.memory.born(1);
   EXPECT_EQ(m.memory.active(), 2);
@@ -51,7 +51,7 @@ TEST(LightMemory, SolvesForQAsTheTwin) {
   double r00 = 0.0, r01 = 0.0, r11 = 8.0;
   for (int frame = 0; frame < 10; ++frame) r00 = kLambda * r00 + 1.0;
   for (const float c : {0.5f, -1.0f, 2.0f, 0.25f, 0.0f}) {
-    m.advance({0, c});
+    m.learn({0, c});
     r00 = kLambda * r00 + 1.0;
     r01 = kLambda * r01 + c;
     r11 = kLambda * r11 + static_cast<double>(c) * c;
@@ -66,12 +66,12 @@ TEST(LightMemory, SolvesForQAsTheTwin) {
   }
 }
 
-TEST(LightMemory, GivesEachBirthTimeAndRunsOutOfSlots) {
+TEST(CoefficientHistory, GivesEachBirthTimeAndRunsOutOfSlots) {
   Memory m(3);
   EXPECT_EQ(m.memory.free_slot(), 0);  // nothing is known yet
   int births = 0;
   for (int frame = 0; frame < 12; ++frame) {
-    m.advance({0, 1.0f, 1.0f});
+    m.learn({0, 1.0f, 1.0f});
     const int slot = m.memory.free_slot();
     if (slot == 0) continue;
     EXPECT_EQ(slot, births + 1);
@@ -83,14 +83,14 @@ TEST(LightMemory, GivesEachBirthTimeAndRunsOutOfSlots) {
   EXPECT_EQ(m.memory.active(), 3);
 }
 
-TEST(LightMemory, ForgetsBasesThatNobodyUses) {
+TEST(CoefficientHistory, ForgetsBasesThatNobodyUses) {
   Memory m(3);
-  for (int frame = 0; frame < 5; ++frame) m.advance({0, 0, 0});
+  for (int frame = 0; frame < 5; ++frame) m.learn({0, 0, 0});
   m.memory.born(1);
   int frames = 0;
   for (; m.memory.retire().empty(); ++frames) {
     ASSERT_LT(frames, 1000);
-    m.advance({0, 0, 0});
+    m.learn({0, 0, 0});
   }
   // 8 frames' worth fall below 0.05 at a rate of 1/64: ln(160) * 64.
   EXPECT_NEAR(frames, 322, 3);
@@ -98,29 +98,29 @@ TEST(LightMemory, ForgetsBasesThatNobodyUses) {
   EXPECT_EQ(m.memory.expected()[1], m.memory.expected()[4]);
   m.memory.born(1);
   for (int frame = 0; frame < 1000; ++frame) {
-    m.advance({0, 0.3f, 0});
+    m.learn({0, 0.3f, 0});
     ASSERT_TRUE(m.memory.retire().empty());
   }
 }
 
-TEST(LightMemory, RoundTripsAndForgetsAtReset) {
+TEST(CoefficientHistory, RoundTripsAndForgetsAtReset) {
   Memory m(3), other(3), fresh(3);
-  for (int frame = 0; frame < 6; ++frame) m.advance({0, 0, 0});
+  for (int frame = 0; frame < 6; ++frame) m.learn({0, 0, 0});
   m.memory.born(1);
-  m.advance({0, 0.5f, 0});
+  m.learn({0, 0.5f, 0});
   StateWriter out;
   m.memory.save(out);
   StateReader in({out.bytes().data(), out.bytes().size()});
   other.memory.load(in);
   in.finish();
-  m.advance({0, -0.25f, 0});
-  other.advance({0, -0.25f, 0});
+  m.learn({0, -0.25f, 0});
+  other.learn({0, -0.25f, 0});
   EXPECT_EQ(other.q(0), m.q(0));
   EXPECT_EQ(other.q(1), m.q(1));
   EXPECT_EQ(other.memory.active(), 2);
   m.memory.reset();
-  m.advance({0, 0, 0});
-  fresh.advance({0, 0, 0});
+  m.learn({0, 0, 0});
+  fresh.learn({0, 0, 0});
   EXPECT_EQ(m.q(0), fresh.q(0));
   EXPECT_EQ(m.memory.active(), 1);
 }

@@ -23,10 +23,10 @@ namespace eigenlight {
 ///
 /// Bases k >= 1 live in slots for the whole image, so that neighboring tiles mean the same by basis
 /// k.
-class LightMemory {
+class CoefficientHistory {
  public:
   /// Throws std::invalid_argument unless `bases` is in [1, kMaxBases].
-  LightMemory(Extent extent, int bases);
+  CoefficientHistory(Extent extent, int bases);
 
   [[nodiscard]] int bases() const { return bases_; }
   [[nodiscard]] bool is_used(int k) const { return in_use_[static_cast<std::size_t>(k)] != 0; }
@@ -35,8 +35,9 @@ class LightMemory {
   /// Expected delta_k^2, entry tile * K + k: M_kk, and 0 for k = 0 and for free slots.
   [[nodiscard]] std::span<const double> expected() const { return expected_; }
 
-  /// Takes in the frame's coefficients and fills `learning` with q - (1, 0, ...) of each tile.
-  void advance(const CoefficientField& coefficients, CoefficientField& learning);
+  /// Takes in the frame's coefficients and fills `learning_rates` with q - (1, 0, ...) of each
+  /// tile.
+  void learn(const CoefficientField& coefficients, CoefficientField& learning_rates);
 
   /// A free slot k >= 1 for a new basis, or 0: none is free, or the last birth is too recent.
   [[nodiscard]] int free_slot() const;
