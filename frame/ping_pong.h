@@ -1,4 +1,5 @@
-// Two buffers that take turns: what a frame reads of the one before, and what it leaves to the next.
+// Two buffers that take turns: what a frame reads of the one before, and what it leaves to the
+// next.
 #pragma once
 
 #include <utility>

@@ -14,7 +14,8 @@
 
 namespace eigenlight {
 
-/// The steps of the frame loop, in their order (docs/method.md). A method reports those that it has.
+/// The steps of the frame loop, in their order (docs/method.md). A method reports those that it
+/// has.
 enum class Stage {
   kSource,    ///< a frame is read
   kWarp,      ///< history is brought to where its surfaces are now

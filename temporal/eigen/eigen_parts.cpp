@@ -1,7 +1,7 @@
+#include "temporal/eigen/eigen_parts.h"
+
 #include <algorithm>
 #include <array>
-
-#include "temporal/eigen/eigen_parts.h"
 
 namespace eigenlight {
 namespace {

@@ -39,10 +39,10 @@ struct Scene {
   PixelCounts merge(bool resampled) {
     PixelCounts counts;
     for_each([&](const Rect& tile) {
-      const PixelCounts found = merge_samples(
-          {frame, frame.lights[0].radiance, resampled ? &extra : nullptr,
-           resampled ? &extra_mean : nullptr, age},
-          tile, {light, samples});
+      const PixelCounts found =
+          merge_samples({frame, frame.lights[0].radiance, resampled ? &extra : nullptr,
+                         resampled ? &extra_mean : nullptr, age},
+                        tile, {light, samples});
       counts += found;
     });
     return counts;
