@@ -6,7 +6,7 @@
 namespace eigenlight {
 
 /// Widest strip in pixels. Along so many the hardware foresees what comes, and eight rows of twenty
-/// planes (800 kB) still fit the second-level cache. temporal/README.md tells what that is worth.
+/// planes (800 kB) still fit the second-level cache. What that is worth: docs/performance.md.
 inline constexpr int kStripWidth = 1280;
 
 /// What strips may narrow down to for many threads: sixteen cache lines of a row of floats.

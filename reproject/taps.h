@@ -12,7 +12,7 @@ namespace eigenlight {
 
 struct TapOptions {
   /// (0, 1] of the depth: a tap whose surface lies farther off the pixel's plane is another
-  /// surface. 0.02 from the prototype (design table, section 3).
+  /// surface.
   float plane_distance = 0.02f;
   /// [-1, 1): a tap whose normal makes a smaller cosine with the pixel's is another surface.
   float normal_cosine = 0.9f;

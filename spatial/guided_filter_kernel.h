@@ -17,7 +17,7 @@ inline constexpr int kGuidedBlock = 8;
 inline constexpr int kBlockPixels = kGuidedBlock * kGuidedBlock;
 
 /// Most columns of a run. Halos of 2 radius on either side make narrow strips dear, wide ones leave
-/// threads without work: spatial/README.md.
+/// threads without work: docs/performance.md.
 [[nodiscard]] constexpr int guided_strip(int radius) {
   return std::max(2 * kGuidedTile, 16 * radius / kGuidedTile * kGuidedTile);
 }

@@ -26,9 +26,9 @@ namespace eigenlight {
 /// Chiu 2012, 3.1. Per unit of the scene, which is a meter in ours.
 inline constexpr float kSigmaZ = 10.0f;
 /// One over Chiu's 0.25: as the factor that Eq. 1 prints, 0.25 leaves perpendicular walls a weight
-/// of 0.94. Figures of both: README.md.
+/// of 0.94. Figures of both: docs/experiments/2026-11-antialiasing.md.
 inline constexpr float kSigmaN = 4.0f;
-/// Pixels. Three or four guide rays, the own among them; figures in README.md.
+/// Pixels. Three or four guide rays, the own among them; figures in docs/experiments.
 inline constexpr float kReconstructRadius = 1.0f;
 /// What a lone neighbor 0.17 m behind weighs: one less alike counts as none. Taste.
 inline constexpr float kLeastWeight = 0.05f;

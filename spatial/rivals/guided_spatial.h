@@ -6,7 +6,7 @@
 
 namespace eigenlight {
 
-/// What suits single frames; the values and what else was tried are in spatial/README.md.
+/// What suits single frames: docs/experiments/2026-11-single-frame-filters.md.
 [[nodiscard]] inline GuidedOptions guided_alone() { return {.epsilon_depth = 0.0005f}; }
 
 /// Bauszat, Eisemann and Magnor 2011, section 3.3: every pixel of each frame through GuidedFilter

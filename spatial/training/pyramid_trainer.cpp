@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kNumbers = 19;  // of a pass: fine, coarse, gamma
 // A start of 0 has no logarithm, and from far below 1 the way up takes long.
 constexpr double kSmallestStart = 0.02;
-constexpr double kRate = 0.1;     // in logarithms; tried: spatial/README.md
+constexpr double kRate = 0.1;     // in logarithms; docs/experiments/2026-11-pyramid.md
 constexpr double kGrowth = 1.05;  // of the rate after an accepted step
 constexpr double kFirst = 0.9, kSecond = 0.999, kTiny = 1e-12;  // Kingma and Ba 2015; their epsilon
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kWindow = 7;
 constexpr double kC1 = 0.01 * 0.01, kC2 = 0.03 * 0.03;  // Wang et al. 2004
-// Tried 0, 0.1, 0.3 and 1: spatial/README.md.
+// Tried 0, 0.1, 0.3 and 1: docs/experiments/2026-11-pyramid.md.
 constexpr double kStructuralShare = 0.1;
 
 struct Moments {

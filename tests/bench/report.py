@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Puts what sequences/benchmark has measured into the README: report.py DIRECTORY [README PLOTS]
+"""Puts what sequences/benchmark has measured into docs/: report.py DIRECTORY [DOCS]
 
 Each table goes between the markers `<!-- benchmark:NAME -->` and `<!-- /benchmark:NAME -->`; SVG
-plots go to the folder PLOTS. Steps without a result in DIRECTORY leave their table as it is.
+plots go to the folder `plots`. Steps without a result in DIRECTORY leave their table as it is.
 """
 
 import math
@@ -58,7 +58,7 @@ def scaling(path, plots):
     for stage, name in (("guided_radius", "guided filter"), ("bilateral_radius", "cross bilateral")):
         chart.add(name, [(r.value, r["ns_per_pixel"]) for r in results if r.stage == stage])
     chart.write(plots / "scaling-radius.svg")
-    images = "".join(f"![{alt}](sequences/plots/{name}.svg)\n" for name, alt in (
+    images = "".join(f"![{alt}](plots/{name}.svg)\n" for name, alt in (
         ("scaling-pixels", "CPU time of the loop against pixels"),
         ("scaling-radius", "CPU time of the guided and the cross bilateral filter against radius")))
     return table.scaling(results) + "\n\n" + images
@@ -145,7 +145,7 @@ def compare(path, plots):
         for label, points in curves(scene).items():
             chart.add(label, points)
         chart.write(plots / f"error-time-{name}.svg", colors)
-        parts.append(f"![{scene['name']}: relMSE against CPU time](sequences/plots/error-time-{name}.svg)")
+        parts.append(f"![{scene['name']}: relMSE against CPU time](plots/error-time-{name}.svg)")
         ms, errors = at_equal_time(scene, results["settings"]["ours"])
         best = min(errors.values(), default=None)
         cells = [f"{errors[l]:.3g}" if l in errors else "-" for l in labels]
@@ -208,7 +208,7 @@ def papers(paths):
 
 
 def sections(directory, plots):
-    """The README's sections by name, as far as there are results."""
+    """The sections of docs/ by name, as far as there are results."""
     found = {}
     if (directory / "denoise.json").exists():
         found["roofline"] = roofline(directory / "denoise.json")
@@ -233,21 +233,26 @@ def sections(directory, plots):
     return found
 
 
+def write_page(page, found):
+    text = set_sections(page.read_text(encoding="utf-8"), found)
+    temporary = page.with_suffix(".part")
+    temporary.write_text(text, encoding="utf-8")
+    os.replace(temporary, page)
+    print(f"{page}: {', '.join(found) or 'nothing to fill in'}")
+
+
 def main():
-    if len(sys.argv) not in (2, 4):
+    if len(sys.argv) not in (2, 3):
         sys.exit(__doc__)
     directory = pathlib.Path(sys.argv[1])
-    readme = pathlib.Path(sys.argv[2]) if len(sys.argv) == 4 else ROOT / "README.md"
-    plots = pathlib.Path(sys.argv[3]) if len(sys.argv) == 4 else ROOT / "sequences" / "plots"
-    found = sections(directory, plots)
-    try:
-        text = set_sections(readme.read_text(encoding="utf-8"), found)
-    except ValueError as error:
-        sys.exit(f"{readme}: {error}")
-    temporary = readme.with_suffix(".part")
-    temporary.write_text(text, encoding="utf-8")
-    os.replace(temporary, readme)
-    print(f"{readme}: {', '.join(found) or 'nothing to fill in'}")
+    docs = pathlib.Path(sys.argv[2]) if len(sys.argv) == 3 else ROOT / "docs"
+    found = sections(directory, docs / "plots")
+    papers_alone = {name: found.pop(name) for name in ("papers",) if name in found}
+    for page, content in ((docs / "measurements.md", found), (docs / "papers.md", papers_alone)):
+        try:
+            write_page(page, content)
+        except ValueError as error:
+            sys.exit(f"{page}: {error}")
 
 
 if __name__ == "__main__":
