@@ -51,12 +51,13 @@ def anchors(path):
 
 
 def links(text):
-    """(line number, text, target) of each link outside code."""
-    for number, line in prose(text):
-        code = [match.span() for match in re.finditer(r"(`+)(?:(?!\1).)*\1", line)]
-        for match in LINK.finditer(line):
-            if not any(start <= match.start() and match.end() <= end for start, end in code):
-                yield number, match.group(1), match.group(2)
+    """(line number, text, target) of each link outside code; its text may go on in the next line."""
+    lines = dict(prose(text))
+    joined = "\n".join(lines.get(n, "") for n in range(1, text.count("\n") + 2))
+    code = [match.span() for match in re.finditer(r"(`+)(?:(?!\1|\n\n).)*\1", joined, re.DOTALL)]
+    for match in LINK.finditer(joined):
+        if not any(start <= match.start() and match.end() <= end for start, end in code):
+            yield joined.count("\n", 0, match.start()) + 1, match.group(1), match.group(2)
 
 
 def identifiers(words):
@@ -84,11 +85,12 @@ def line_faults(path, words, fragment):
 def line_of(lines, name, wanted):
     """The number of the line that defines `name`, or that names it; of several the one nearest to
     `wanted`. None without any."""
-    # From the best place to the worst: types, functions of a file, members, whatever is no comment.
-    for pattern in (rf"\s*(struct|class|enum class) {name}\b(?!;)", rf"[^\s/].*\b{name}\(",
-                    rf"\s*(\[\[nodiscard\]\] )?[\w:<>&*]+ {name}\(", rf"\s*[^/\s].*\b{name}\b",
-                    rf".*\b{name}\b"):
-        found = [n for n, line in enumerate(lines, 1) if re.match(pattern, line)]
+    code = [line.split("//")[0] for line in lines]
+    # From the best place to the worst: types, functions of a file, members, other code, comments.
+    for pattern, text in ((rf"\s*(struct|class|enum class) {name}\b(?!;)", code), (rf"\S.*\b{name}\(", code),
+                          (rf"\s*(\[\[nodiscard\]\] )?[\w:<>&*]+ {name}\(", code), (rf".*\b{name}\b", code),
+                          (rf".*\b{name}\b", lines)):
+        found = [n for n, line in enumerate(text, 1) if re.match(pattern, line)]
         if found:
             return min(found, key=lambda n: abs(n - wanted))
     return None

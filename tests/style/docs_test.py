@@ -42,6 +42,7 @@ class DocsTest(unittest.TestCase):
             ({"README.md": top + "x" * 121 + "\n"}, "README.md:3: longer than 120 columns"),
             ({"frame/README.md": GOOD["frame/README.md"] + "\n" * 78}, "longer than 79 lines"),
             ({"README.md": top + "[a](docs/gone.md)\n"}, "README.md:3: 'docs/gone.md' does not exist"),
+            ({"README.md": top + "[a\nb](docs/gone.md)\n"}, "README.md:3: 'docs/gone.md' does not exist"),
             ({"README.md": top + "![a](docs/gone.jpg)\n"}, "'docs/gone.jpg' does not exist"),
             ({"README.md": top + "[a](..)\n"}, "'..' leads out of the project"),
             ({"README.md": top + "[a](docs/method.md#gone)\n"}, "no heading #gone in docs/method.md"),
