@@ -9,8 +9,8 @@
 
 namespace eigenlight {
 
-/// Side of a coefficient tile in pixels. 32 measured better than 16 (design table: 0.0016 against
-/// 0.0018), and is half a segment.
+/// Side of a coefficient tile in pixels. 32 measured better than 16
+/// (docs/experiments/2026-11-prototype.md), and is half a segment.
 inline constexpr int kCoefficientTile = 32;
 
 struct ShrinkOptions {

@@ -5,8 +5,8 @@ The README and those of folders stay short. Every relative link points to a file
 `#fragment` to a heading of that page, and `#L12` to a line of that file; identifiers in backticks in
 the text of such a link stand within a few lines of it. Every page is linked from another.
 
-docs.py ROOT --mend moves links whose line is wrong to where the identifier in their text stands now:
-to its definition, if there is one, and of several to the nearest. `#L0` asks for the first.
+docs.py ROOT --mend moves links whose line does not name the identifier in their text to where it
+stands now: to its definition, if there is one, and of several to the nearest. `#L0` asks for the first.
 """
 
 import pathlib
@@ -101,14 +101,15 @@ def mend_link(path, match):
     words, target = match.groups()
     file, _, fragment = target.partition("#")
     to = path.parent / file
-    if not LINES.match(fragment) or not to.is_file() or not list(line_faults(to, words, fragment)):
+    names = list(identifiers(words))
+    if not LINES.match(fragment) or not to.is_file() or not names:
         return match.group()
+    lines = to.read_text().splitlines()
     wanted = int(LINES.match(fragment).group(1))
-    for name in identifiers(words):
-        line = line_of(to.read_text().splitlines(), name, wanted)
-        if line:
-            return match.group().replace(f"#{fragment})", f"#L{line})")
-    return match.group()
+    if 1 <= wanted <= len(lines) and any(re.search(rf"\b{n}\b", lines[wanted - 1]) for n in names):
+        return match.group()
+    line = line_of(lines, names[0], wanted)
+    return match.group().replace(f"#{fragment})", f"#L{line})") if line else match.group()
 
 
 def mend(root):

@@ -63,14 +63,14 @@ class DocsTest(unittest.TestCase):
         code = ("// update_tile is called below\nstruct Move;\nvoid f() {\n  update_tile(1);\n}\n" + "\n" * 20 +
                 "  void update_tile(int k);\n" + "\n" * 20 + "struct Move {\n  int step = 0;\n};\n")
         page = ("[`update_tile`](frame/update.h#L{})\n[`Move::step`](frame/update.h#L{})\n"
-                "[`Move`](frame/update.h#L{})\n[`gone`](frame/update.h#L7)\n[`f`](frame/update.h#L5)\n")
+                "[`Move`](frame/update.h#L{})\n[`gone`](frame/update.h#L7)\n[`f`](frame/update.h#L{})\n")
         with tempfile.TemporaryDirectory() as directory:
             root = pathlib.Path(directory)
             (root / "frame").mkdir()
             (root / "frame/update.h").write_text(code)
-            (root / "README.md").write_text(page.format(12, 0, 0))
+            (root / "README.md").write_text(page.format(12, 0, 0, 5))
             docs.mend(root)
-            self.assertEqual((root / "README.md").read_text(), page.format(26, 48, 47))
+            self.assertEqual((root / "README.md").read_text(), page.format(26, 48, 47, 3))
             self.assertEqual(list(docs.faults(root)),
                              ["README.md:4: #L7: no `gone` within 4 lines of it in update.h"])
 
