@@ -83,14 +83,13 @@ class AnalyticSource final : public FrameSource {
   [[nodiscard]] bool resample(const Plane<std::uint8_t>& extra, FrameInput& frame,
                               std::span<Planes<3>* const> means) override {
     ++resampled_;
-    Planes<3>& mean = *means[0];
     for (int y = 0; y < options_.extent.height; ++y) {
       for (int x = 0; x < options_.extent.width; ++x) {
         const int count = frame.surface.id(x, y) == 0 ? 0 : extra(x, y);
         frame.rays += count;
         for (int c = 0; c < 3; ++c) {
-          mean[static_cast<std::size_t>(c)](x, y) =
-              count > 0 ? sample_mean({x, y}, c, {frame.index, count}) : 0.0f;
+          const float mean = count > 0 ? sample_mean({x, y}, c, {frame.index, count}) : 0.0f;
+          for (Planes<3>* layer : means) (*layer)[c](x, y) = mean;
         }
       }
     }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <vector>
 
 #include "tests/support/extents.h"
 
@@ -110,6 +111,68 @@ TEST(Plane, EnsureExtentKeepsWhatFitsAndReplacesTheRest) {
   ensure_extent(plane, {3, 5});
   EXPECT_EQ(plane.extent(), (Extent{3, 5}));
   EXPECT_EQ(plane(1, 1), 0.0f);
+}
+
+// Values 0, 1, 2, ... in rows that are `stride` floats apart, the first of them `offset` floats in.
+struct Foreign {
+  Foreign(Extent size, int row, int offset)
+      : extent(size), stride(row), memory(static_cast<std::size_t>(row * size.height + offset)) {
+    first = memory.data() + offset;
+    for (int y = 0; y < size.height; ++y) {
+      for (int x = 0; x < size.width; ++x) first[y * row + x] = value(x, y);
+    }
+  }
+  [[nodiscard]] float value(int x, int y) const { return static_cast<float>(y * extent.width + x); }
+  [[nodiscard]] std::ptrdiff_t row_bytes() const {
+    return stride * static_cast<std::ptrdiff_t>(sizeof(float));
+  }
+
+  Extent extent;
+  int stride;
+  std::vector<float> memory;
+  float* first;
+};
+
+TEST(PlaneView, ShowsForeignMemory) {
+  for (const Extent extent : {Extent{65, 7}, Extent{48, 1}, Extent{64, 2}, Extent{3, 5}}) {
+    const Foreign foreign(extent, extent.width + 3, 1);
+    const auto view = Plane<float>::view(foreign.first, extent, foreign.row_bytes());
+    ASSERT_EQ(view.extent(), extent);
+    for (int y = 0; y < extent.height; ++y) {
+      for (int x = 0; x < extent.width; ++x) ASSERT_EQ(view(x, y), foreign.value(x, y));
+    }
+  }
+}
+
+TEST(PlaneView, CopiesOnlyTheFirstAndTheLastRow) {
+  const Foreign foreign({65, 7}, 70, 1);
+  const auto view = Plane<float>::view(foreign.first, foreign.extent, foreign.row_bytes());
+  EXPECT_TRUE(view.is_view());
+  for (int y = 0; y < 7; ++y) EXPECT_EQ(view.row(y) == foreign.first + 70 * y, y > 0 && y < 6) << y;
+  const Plane<float> copy = view.clone();
+  EXPECT_FALSE(copy.is_view());
+  for (int y = 0; y < 7; ++y) EXPECT_EQ(copy(64, y), foreign.value(64, y));
+}
+
+TEST(PlaneView, ReadsImagesFromTheBottomUp) {
+  const Foreign foreign({65, 7}, 66, 0);
+  const auto view =
+      Plane<float>::view(foreign.first + 6 * 66, foreign.extent, -foreign.row_bytes());
+  for (int y = 0; y < 7; ++y) {
+    for (int x = 0; x < 65; ++x) ASSERT_EQ(view(x, y), foreign.value(x, 6 - y));
+  }
+}
+
+TEST(PlaneView, RefusesStridesThatNoImageHas) {
+  const Foreign foreign({65, 7}, 70, 0);
+  const auto view = [&](const float* first, std::ptrdiff_t row_bytes) {
+    return Plane<float>::view(first, {65, 7}, row_bytes);
+  };
+  EXPECT_THROW((void)view(nullptr, 280), std::invalid_argument);
+  EXPECT_THROW((void)view(foreign.first, 256), std::invalid_argument);
+  EXPECT_THROW((void)view(foreign.first, 0), std::invalid_argument);
+  EXPECT_THROW((void)view(foreign.first, 281), std::invalid_argument);
+  EXPECT_THROW((void)Plane<float>::view(foreign.first, {0, 7}, 280), std::invalid_argument);
 }
 
 TEST(Extent, ContainsItsPixelsOnly) {
