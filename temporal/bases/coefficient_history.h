@@ -1,5 +1,5 @@
-// What each tile remembers of its light's past: how much every basis has been used, and so how fast
-// it may still learn.
+// Statistics of each tile's coefficients over past frames: how much every basis has been used, and
+// hence how fast it learns.
 #pragma once
 
 #include <vector>
@@ -21,8 +21,8 @@ namespace eigenlight {
 /// is its step and w = 1/n its weight. Unlike there a step can never overshoot: it changes the
 /// prediction of the current frame by the fraction h / (n + h) of the residual.
 ///
-/// Bases k >= 1 live in slots for the whole image, so that neighboring tiles mean the same by basis
-/// k.
+/// A slot k >= 1 holds the same basis in all tiles of the image, because coefficients are
+/// interpolated between tiles.
 class CoefficientHistory {
  public:
   /// Throws std::invalid_argument unless `bases` is in [1, kMaxBases].
@@ -39,7 +39,7 @@ class CoefficientHistory {
   /// tile.
   void learn(const CoefficientField& coefficients, CoefficientField& learning_rates);
 
-  /// A free slot k >= 1 for a new basis, or 0: none is free, or the last birth is too recent.
+  /// A free slot k >= 1 for a new basis, or 0 if none is free or the last birth is too recent.
   [[nodiscard]] int free_slot() const;
   /// Basis k was born in this frame with coefficient 1.
   void born(int k);

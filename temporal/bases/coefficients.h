@@ -1,4 +1,4 @@
-// What the light did to each tile: coefficients of the bases, from noise-aware projection.
+// Coefficients of the bases in each tile: projection of this frame's light, less its noise.
 #pragma once
 
 #include <span>
@@ -20,8 +20,8 @@ struct ShrinkOptions {
   void validate() const;  ///< throws std::invalid_argument naming the field
 };
 
-/// Coefficients along a row of one tile: values[k][i] is c_k of its pixel i, meant for all pixels
-/// that a whole tile has.
+/// Coefficients along a row of one tile: values[k][i] is c_k of its pixel i, with room for the
+/// pixels of a whole tile.
 struct CoefficientRows {
   alignas(64) float values[kMaxBases][kCoefficientTile];
 
@@ -43,7 +43,7 @@ class CoefficientField {
     return {values_.data() + static_cast<std::size_t>(index * kMaxBases),
             static_cast<std::size_t>(bases_)};
   }
-  /// Its data may be read up to kMaxBases.
+  /// kMaxBases values may be read from its start.
   [[nodiscard]] std::span<const float> tile(int index) const {
     return {values_.data() + static_cast<std::size_t>(index * kMaxBases),
             static_cast<std::size_t>(bases_)};
@@ -66,16 +66,16 @@ class CoefficientField {
 /// one out).
 ///
 /// Each delta_k is then shrunk by its own noise, delta_k * max(0, 1 - noise var(delta_k) /
-/// delta_k^2) (positive-part James-Stein), with var from the observed scatter of the pixels' own
-/// estimates about the gain 1 + delta_0. Without this a steady light would flicker by the noise of
-/// its gain; about a gain of 1 instead, a light that goes out would leave 0.2 % of itself behind.
+/// delta_k^2) (positive-part James-Stein), with var from TileSums::innovation_variance() about the
+/// gain 1 + delta_0. Without shrinkage a steady light flickers by the noise of its gain. With the
+/// variance about a gain of 1, a light that goes out leaves 0.2 % of itself behind.
 ///
-/// Where `expected` tells the mean square m of delta_k over past frames (entry tile * K + k; empty:
-/// not known), the Wiener factor m / (m + var) is taken if it keeps more: a basis in use is
-/// trusted.
+/// `expected` holds the mean square m of delta_k over past frames (entry tile * K + k), or is
+/// empty. Where the Wiener factor m / (m + var) is larger than the factor above, it is used
+/// instead: a basis that has been in use is trusted.
 ///
-/// Bases without energy get delta 0, and no gain falls below 0. `sums` holds one entry per tile of
-/// the field's grid.
+/// Bases without energy get delta 0. The gain 1 + delta_0 is at least 0. `sums` holds one entry per
+/// tile of the field's grid.
 void solve_coefficients(std::span<const TileSums> sums, std::span<const double> expected,
                         const ShrinkOptions& options, CoefficientField& field);
 

@@ -1,4 +1,4 @@
-// What the history says this frame should look like.
+// The light that history predicts for this frame, and the residual.
 #pragma once
 
 #include "frame/frame.h"
@@ -15,13 +15,13 @@ struct PredictOutputs {
 };
 
 /// Reconstruction (Chen 2012, Eq. 1) with interpolated coefficients,
-///   prediction = sum_k c_k V_k,
-/// and what it lacks of this frame's light, for the pixels of a coefficient tile.
+///   prediction = sum_k c_k V_k,   residual = u - prediction,
+/// for the pixels of a coefficient tile.
 ///
-/// Noise follows a light that jumps: variance <- g^2 variance, g what c_0 is beyond the range [1/2,
-/// 2], over the end that it passes. Within it the running mean of variances follows by itself: a
-/// light that is one of several changes the noise in no known way (scaled by c_0^2 always, relMSE
-/// of `atrium --perturb lights` at 320x180 was 0.055 instead of 0.046).
+/// The variance follows a gain c_0 that jumps: variance <- g^2 variance, with g = c_0 / 2 above 2,
+/// g = 2 c_0 below 1/2, and 1 between. Smaller changes are left to the running mean of variances:
+/// one light of several changes the noise in no known way (scaling by c_0^2 always gave a relMSE of
+/// 0.055 instead of 0.046 in `atrium --perturb lights` at 320x180).
 void predict_tile(const BasisField& bases, const CoefficientField& coefficients, const Rect& tile,
                   const PredictOutputs& out);
 

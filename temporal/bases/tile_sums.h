@@ -1,4 +1,4 @@
-// Inner products of a tile: all that projection and rank decisions need of its pixels.
+// Inner products over the pixels of a tile, from which coefficients are solved.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ namespace eigenlight {
 /// window of 81 of them.
 inline constexpr float kLargestLight = 1e18f;
 
-/// Rows that accumulate_tile() best gets at once: that many are summed in float.
+/// Rows summed in float before the sums go to double. Call accumulate_tile() with multiples of it.
 inline constexpr int kSumRows = 4;
 
 /// Frames that light, and the statistics of its coefficients, are remembered at most.
@@ -34,17 +34,17 @@ struct TileSums {
   std::array<double, kMaxBases> scatter_r0{};                ///< sum_p m^2 (V_i . r) (V_i . V_0)
   std::array<double, kMaxBases> scatter_00{};                ///< sum_p m^2 (V_i . V_0)^2
   double pixels = 0.0;                                       ///< with m > 0
-  double outliers = 0.0;                                     ///< of them, held back
+  double outliers = 0.0;                                     ///< of these, with reduced weight
 
   TileSums& operator+=(const TileSums& other);
   /// Variance of innovation[i] where the light's gain is 1 + delta, fitted to the same pixels:
   ///   sum_p m^2 (V_i . (r - delta V_0))^2 / (1 - 3 h),   h = sum_p (m V_0 . V_0)^2 / <V_0, V_0>^2.
-  /// 1 / h pixels' worth have 1 / h - 1 degrees of freedom, and the last factor is the variance of
-  /// Student's t. With no more than three of them it is the spread, about a gain of 1.
+  /// The tile has as much information as 1 / h equal pixels, hence 1 / h - 1 degrees of freedom;
+  /// the denominator is the variance of Student's t. With three degrees or fewer it is
+  /// scatter_rr[i].
   [[nodiscard]] double innovation_variance(std::size_t i, double delta) const;
 };
 
-/// What the sums are taken over.
 struct SumInputs {
   const BasisField& bases;       ///< warped, not yet updated (leave one out)
   const Planes<3>& light;        ///< u: raw samples of one layer of light
@@ -60,8 +60,8 @@ struct SumInputs {
 /// their ratio. Sums over kSumRows rows are in float, over those in double.
 void accumulate_tile(const SumInputs& in, const Rect& tile, TileSums& sums);
 
-/// A few fireflies are no gain, a light that changed is: where more than an eighth of the pixels of
-/// a whole tile are outliers, `sums` becomes that of full weights.
+/// Where more than an eighth of the pixels of a whole tile are outliers, the light has changed: the
+/// tile is summed again with full weights. Fewer are taken for fireflies.
 void admit_outliers(const SumInputs& in, const Rect& tile, TileSums& sums);
 
 }  // namespace eigenlight

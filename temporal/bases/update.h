@@ -1,4 +1,4 @@
-// Incremental PCA: the bases take this frame in.
+// Incremental PCA: updates the bases by this frame.
 #pragma once
 
 #include "temporal/bases/coefficients.h"
@@ -27,10 +27,10 @@ struct UpdateOutputs {
 /// = residual - correction, s samples, n = new age - s, q = M^-1 c and h = c . q:
 ///   V_0 <- c_0 V_0                                     the steady light, scaled to the present one
 ///   V_k <- V_k + q_k (correction / h + r s / (n + h s))
-/// so that sum_k c_k V_k moves by the whole correction and by h s / (n + h s) of r. Of one basis
-/// that is the running mean. A newborn basis starts as the correction instead, with c_k = 1. A new
-/// pixel has n = 0 and starts at the V of least energy that explains u. Pixels without usable
-/// samples keep what they have; those without history either stay 0.
+/// so that sum_k c_k V_k moves by the whole correction and by h s / (n + h s) of r. With one basis
+/// this is the running mean. A newborn basis is set to the correction, with c_k = 1. A new pixel
+/// has n = 0 and starts at the V of least energy that explains u. Pixels without usable samples
+/// keep their history; pixels without history as well stay 0.
 void update_tile(const UpdateInputs& in, const Rect& tile, const UpdateOutputs& out);
 
 }  // namespace eigenlight

@@ -1,4 +1,4 @@
-// What the bases cannot explain but many neighbors agree on is added to the history at once.
+// Adds to the history at once what no basis explains but many neighbors agree on.
 #pragma once
 
 #include "frame/frame.h"
@@ -23,8 +23,8 @@ struct CorrectionOptions {
 /// variance q, and
 ///   correction = m f g,   f = max(0, 1 - significance * q / luminance(m)^2), averaged over
 ///   those of 3 x 3 cells that have a confirmed pixel,
-/// is what the prediction lacks. A light that changes in a way no basis knows yet is so followed
-/// within the frame, by its spatial smoothness instead of its history.
+/// is what the prediction lacks. So a light that changes in a way that no basis knows is followed
+/// within the frame, by its smoothness in space instead of its history.
 ///
 /// g in [0, 1] opens where light does change: it grows with the share of 8 x 8 blocks whose mean
 /// residual exceeds three of its standard deviations, over a coefficient tile and its neighbors,
@@ -35,18 +35,17 @@ class Correction {
   /// option.
   Correction(Extent extent, const CorrectionOptions& options, const TapOptions& taps = {});
 
-  /// Takes in the geometry of `area`, an even number of rows from an even one on (or up to the last
-  /// one), for the cells that the last frame needed, while it is in the cache. To be called for all
-  /// of the image before count(), in any order and on any thread (apart: cells are written up to 16
-  /// pixels beside the area).
+  /// Reads the geometry of `area` for the cells that the last frame needed. `area` starts at an
+  /// even row and has an even height unless it ends with the image. Call it for the whole image
+  /// before count_blocks(), in any order. Cells are written in groups of 8 (16 pixels): concurrent
+  /// calls must not share a group.
   void read_geometry(const GBuffer& surface, const Rect& area);
-  /// Takes in the pixels of `area`, one or more blocks of 8 x 8 side by side: their blocks are
-  /// tested, and cells are filled that the last frame needed. To be called for all of the image
-  /// before process(), as place(); again for blocks that change.
+  /// Tests the blocks of `area`, one or more blocks of 8 x 8 side by side, and fills the cells that
+  /// the last frame needed. Call it for the whole image before smooth(), in any order, and again
+  /// for blocks that change.
   void count_blocks(const CorrectionInputs& in, const Rect& area);
-  /// Leaves what is to be added to the prediction in correction(), and subtracts its luminance from
-  /// `innovation`, which may be that of the inputs. Returns the share of confirmed pixels corrected
-  /// by more than half.
+  /// Computes correction(), and subtracts its luminance from `innovation`, which may be that of the
+  /// inputs. Returns the share of confirmed pixels that are corrected by more than half.
   double smooth(const CorrectionInputs& in, Plane<float>& innovation);
   /// Zero where the prediction lacks nothing.
   [[nodiscard]] const Planes<3>& correction() const { return correction_; }

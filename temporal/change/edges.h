@@ -1,4 +1,4 @@
-// Where surfaces meet, history is a mixture of places.
+// Edges of geometry, where a bilinear history mixes several surfaces.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@ namespace eigenlight {
 /// 0 elsewhere, and where there is no surface.
 ///
 /// Light at such places (crevices, rims, the foot of a wall) changes within less than a pixel, and
-/// a bilinear history brings along what is beside: it must end soon. Ages that stay low also draw
-/// further samples there (spatial/sample_budget.h).
+/// a bilinear history blends it with its surroundings, so ages are limited there. Low ages also
+/// draw extra samples (spatial/sample_budget.h).
 ///
 /// `tile` starts and ends at multiples of 16 pixels (vectors) or ends with the image.
 void find_edges(const FrameInput& frame, const TapOptions& options, const Rect& tile,
@@ -29,8 +29,8 @@ struct LongestAges {
   float inside, at_edges;
 };
 
-/// age <- min(age, max(longest, samples)): below this frame's own samples (over their regular
-/// number) an age would weigh them more than once.
+/// age <- min(age, max(longest, samples)). An age below this frame's own samples (over their
+/// regular number) would give them a weight above 1.
 void shorten_ages(const Plane<std::uint8_t>& edge, const Plane<float>& samples,
                   const LongestAges& longest, const Rect& tile, Plane<float>& age);
 

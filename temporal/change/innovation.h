@@ -1,4 +1,4 @@
-// Is the history wrong here? A test of the residual's local mean against its own noise.
+// The innovation test: is the local mean of the residual more than noise explains?
 #pragma once
 
 #include "frame/frame.h"
@@ -31,8 +31,8 @@ struct InnovationOutputs {
 
 /// Over the window of 9 x 9 pixels, with N confirmed innovations e, mean mu and variance v:
 ///   t = mu^2 / (v / N * (1 + 1/n)),   b^2 = mu^2 max(0, 1 - threshold / t)
-/// is the squared bias that noise does not explain. The history of n frames is off by v/n + b^2,
-/// this frame's mean over s times the regular samples by v/s, so the Kalman gain that balances them
+/// is the squared bias that noise does not explain. The history of n frames has the error v/n +
+/// b^2, this frame's mean over s times the regular samples v/s; the Kalman gain that balances them
 /// is
 ///   w = (v/n + b^2) / (v/n + b^2 + v/s),   and the new age s/w, at most max(max_age, s).
 /// Without bias, or with N = 1, that is n + s. So it is at unconfirmed pixels: new ones start at

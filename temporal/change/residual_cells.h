@@ -1,4 +1,4 @@
-// The frame's residual in cells of 2 x 2 pixels, and back: smoothing it wants no finer grain.
+// Downsamples the residual to cells of 2 x 2 pixels and back; smoothing needs no finer resolution.
 #pragma once
 
 #include <span>
@@ -37,7 +37,7 @@ struct ResidualCells {
 
   /// Cells as a frame of their own, of which only camera and surface are set: each has the geometry
   /// of its upper left pixel, but id 0 and depth +inf, as where there is no surface, if none of its
-  /// pixels is confirmed: what says nothing must not count as a residual of 0.
+  /// pixels is confirmed: an unknown residual must not count as 0.
   FrameInput guides;
   TapOptions taps;              ///< what counts as the same surface
   Planes<3> mean;               ///< residual of the confirmed pixels

@@ -1,4 +1,4 @@
-// What EigenDenoiser can be told.
+// Options of EigenDenoiser.
 #pragma once
 
 #include "reproject/taps.h"
@@ -21,10 +21,11 @@ struct EigenOptions {
   BudgetOptions budget;
   GuidedOptions guided;
   AtrousOptions atrous{.passes = 4, .radius = 1, .luminance_sigmas = 7.0f};
-  /// [0, 255] frames: younger pixels take the guided filter's value the more, the younger they are.
+  /// [0, 255] frames: pixels of lower age take the guided filter's value in the share 1 - age /
+  /// limit.
   float young_age = 2.0f;
-  /// [1, 255] frames: the longest age where light changes in ways that no basis knows. A filter
-  /// takes noise from the estimate later, but not what an old light left in it.
+  /// [1, 255] frames: the longest age where light changes in ways that no basis knows. Filters
+  /// remove noise later, but not the remains of an old light.
   float max_age_changing = 12.0f;
   /// [1, 255] frames: the longest age at edges whose history is blended (edges.h); at most 2/3 of
   /// the limit of the pixels around. Values of innovation.max_age or more turn the rule off.
@@ -36,7 +37,7 @@ struct EigenOptions {
   bool project = true;     ///< solve for coefficients; else the light is taken to be steady
   bool correct = true;     ///< add the smoothed innovation
   bool filter = true;      ///< a-trous passes over the output
-  bool look_back = true;   ///< they tell edges of light by the last output as well
+  bool look_back = true;   ///< they find edges of light in the last output as well
   bool skip_still = true;  ///< no taps for frames in which nothing moves
   bool skip_empty = true;  ///< no work in tiles without surface
 
