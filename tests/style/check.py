@@ -58,6 +58,7 @@ THIRD_PARTY = [  # (includes, files that may have them)
     (r"OpenImageIO/", ["sequences/files/exr_io.cpp", "sequences/files/ldr_image.cpp",
                        "render/loading/image_file.cpp"]),
     (r"hwy/", ["*_simd.cpp"]),
+    (r"fmt/", ["*.cpp"]),  # headers that others include need no fmt
     (r"CLI/", ["sequences/cli/*"]),
     (r"nlohmann/", ["sequences/*", "render/loading/scene_file*"]),
     (r"xxhash", ["sequences/*"]),
