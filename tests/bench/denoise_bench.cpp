@@ -228,6 +228,32 @@ void denoiser(benchmark::State& state) { run_denoiser(state, RoomLight::kChangin
 
 void denoiser_steady(benchmark::State& state) { run_denoiser(state, RoomLight::kSteady); }
 
+// The whole loop with one layer of light and with two, by turns: what a second layer costs, as
+// `layers_ratio`.
+void two_layers(benchmark::State& state) {
+  const Setting setting(state);
+  RoomLap lap(setting.extent);
+  Loop one(setting, lap);
+  RoomLap twice(setting.extent);
+  twice.repeat_light(2);
+  Loop two(setting, twice);
+  if (!one.is_sound_at_start() || !two.is_sound_at_start()) {
+    return state.SkipWithError("output is not finite");
+  }
+  std::vector<double> ratios;
+  measure(state, setting.extent, loop_work(setting.bases), [&] {
+    benchmark::DoNotOptimize(one.step());
+    benchmark::DoNotOptimize(two.step());
+    ratios.push_back(two.cpu_ms() / one.cpu_ms());
+    return two.cpu_ms();
+  });
+  state.counters["layers_ratio"] = median(std::move(ratios));
+}
+
+void of_three_bases_720(benchmark::internal::Benchmark* bench) {
+  add_sweep(bench, {.heights = bench_heights({720}), .bases = {3}});
+}
+
 void at_default_bases(benchmark::internal::Benchmark* bench) { add_sweep(bench, {.bases = {5}}); }
 
 BENCHMARK(reproject)->Apply(of_all_bases);
@@ -238,6 +264,7 @@ BENCHMARK(update)->Apply(of_all_bases);
 BENCHMARK(temporal)->Apply(of_all_threads);
 BENCHMARK(denoiser)->Apply(of_all_threads);
 BENCHMARK(denoiser_steady)->Apply(at_default_bases);
+BENCHMARK(two_layers)->Apply(of_three_bases_720);
 
 }  // namespace
 }  // namespace eigenlight

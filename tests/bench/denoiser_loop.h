@@ -20,7 +20,13 @@ namespace eigenlight {
 class Loop {
  public:
   explicit Loop(const Setting& setting, RoomLight light = RoomLight::kChanging)
-      : source_(setting.lap(light)), denoiser_({setting.extent, setting.bases}) {
+      : Loop(setting, setting.lap(light)) {}
+  /// Frames of `lap`, which must outlive this; all of them have the same number of layers of light.
+  Loop(const Setting& setting, const RoomLap& lap)
+      : source_(lap),
+        denoiser_({.extent = setting.extent,
+                   .bases = setting.bases,
+                   .layers = static_cast<int>(lap.frames.front().lights.size())}) {
     for (int i = 0; i < 2 * RoomLap::kFrames; ++i) sound_ = is_sound(*step(), setting.extent);
   }
   const Planes<3>* step() {

@@ -98,6 +98,18 @@ struct RoomLap {
     }
   }
 
+  /// Gives each frame `layers` layers of light, each with the channels of the one before in turn.
+  void repeat_light(int layers) {
+    for (Frame& frame : frames) {
+      frame.lights.resize(static_cast<std::size_t>(layers));
+      for (std::size_t i = 1; i < frame.lights.size(); ++i) {
+        for (int c = 0; c < 3; ++c) {
+          frame.lights[i].radiance[c] = frame.lights[i - 1].radiance[(c + 1) % 3].clone();
+        }
+      }
+    }
+  }
+
   Extent extent;
   RoomLight light;
   std::vector<Frame> frames = std::vector<Frame>(kFrames);
