@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "frame/named.h"
 #include "spatial/rivals/atrous_filter.h"
 #include "spatial/rivals/cross_bilateral.h"
 #include "spatial/rivals/guided_spatial.h"
@@ -38,19 +39,12 @@ std::unique_ptr<Denoiser> through(const DenoiserOptions& options, std::string_vi
   return by_frame(options, name, std::make_unique<Filter>(options.extent, chosen));
 }
 
-template <typename List>
-std::string names(const List& list) {
-  std::string text;
-  for (const auto& entry : list) text += fmt::format("{}{}", text.empty() ? "" : ", ", entry.name);
-  return text.empty() ? "none" : text;
-}
-
 void check_parts(const Method& method, const std::vector<std::string>& without) {
   for (const std::string& name : without) {
     const bool known = std::any_of(method.parts.begin(), method.parts.end(),
                                    [&](const Part& part) { return part.name == name; });
     EL_CHECK(known, "method '{}' has no part '{}' to turn off; it has: {}", method.name, name,
-             names(method.parts));
+             names_of(method.parts));
   }
 }
 
@@ -100,11 +94,9 @@ const std::vector<Method>& methods() {
 std::unique_ptr<Denoiser> make_denoiser(std::string_view name, const DenoiserOptions& options) {
   check_extent(options.extent);
   EL_CHECK(options.bases >= 1 && options.bases <= 8, "bases {}: expected 1 to 8", options.bases);
-  const auto method = std::find_if(methods().begin(), methods().end(),
-                                   [&](const Method& m) { return m.name == name; });
-  EL_CHECK(method != methods().end(), "unknown method '{}'; known: {}", name, names(methods()));
-  check_parts(*method, options.without);
-  return method->make(options);
+  const Method& method = find_named(methods(), name, "method");
+  check_parts(method, options.without);
+  return method.make(options);
 }
 
 }  // namespace eigenlight

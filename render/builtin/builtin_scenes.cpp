@@ -1,12 +1,9 @@
 #include "render/builtin/builtin_scenes.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <glm/gtc/matrix_transform.hpp>
 #include <string>
 
-#include "frame/check.h"
+#include "frame/named.h"
 #include "render/builtin/builtin_parts.h"
 
 namespace eigenlight {
@@ -21,13 +18,7 @@ const std::vector<BuiltinScene>& builtin_scenes() {
 }
 
 Scene make_builtin_scene(std::string_view name) {
-  std::vector<std::string_view> names;
-  for (const BuiltinScene& scene : builtin_scenes()) {
-    if (scene.name == name) return scene.make();
-    names.push_back(scene.name);
-  }
-  throw std::invalid_argument(
-      fmt::format("unknown scene \"{}\", expected {}", name, fmt::join(names, ", ")));
+  return find_named(builtin_scenes(), name, "scene").make();
 }
 
 int add_material(Scene& scene, const std::string& name, const glm::vec3& color) {

@@ -5,11 +5,15 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <new>
+#include <optional>
+#include <stdexcept>
 #include <string>
+#include <vector>
 
+#include "sequences/cli/command.h"
 #include "sequences/cli/compare_command.h"
-#include "sequences/cli/compare_options.h"
 #include "sequences/cli/evaluate_command.h"
+#include "sequences/cli/job.h"
 #include "sequences/cli/judge_pyramid_command.h"
 #include "sequences/cli/list_commands.h"
 #include "sequences/cli/render_command.h"
@@ -22,113 +26,59 @@
 namespace eigenlight {
 namespace {
 
-constexpr int kFailed = 1;
-constexpr int kBadUsage = 2;
+// In the order of `eigenlight --help`.
+constexpr Command (*kCommands[])(CLI::App&) = {
+    add_render_command,  add_scenes_command, add_methods_command,       add_evaluate_command,
+    add_compare_command, add_stress_command, add_train_pyramid_command, add_judge_pyramid_command,
+};
 
-void add_picture_options(CLI::App& command, RenderSettings& settings) {
-  // Scripts put a user's options behind their own.
-  command.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
-  command
-      .add_option("scene", settings.scene,
-                  "Built-in name (see `eigenlight scenes`), scene.json, .gltf, .glb or .obj")
-      ->required();
-  command.add_option("-o,--output", settings.directory, "Directory for frames, logs and page")
-      ->required();
-  command.add_option("--frames", settings.frames, "Such as 7, 0-47, 5-1, 1-100x5 or 1-9,20")
-      ->capture_default_str();
-  command.add_option("--size", settings.size, "Width and height in pixels")->capture_default_str();
-  command.add_option("--spp", settings.spp,
-                     "Samples of indirect light per pixel [3; reference: 512]");
-  command.add_option("--bounces", settings.bounces, "Bounces of indirect light")
-      ->capture_default_str();
-  command.add_option("--seed", settings.seed, "Other seeds, other noise")->capture_default_str();
-  command
-      .add_option("--perturb", settings.perturb,
-                  "What changes: none, lights, objects, all, step[:FRAME] (light, once)")
-      ->capture_default_str();
-  command.add_flag("--environment", settings.environment,
-                   "Environment map of a scene.json in place of its suns and sky");
-}
-
-void add_run_options(CLI::App& command, RenderSettings& settings) {
-  command.add_option("--method", settings.method,
-                     fmt::format("See `eigenlight methods` [{}]", default_method()));
-  command.add_option("--without", settings.without,
-                     "Parts of the method to turn off, with commas; see `eigenlight methods "
-                     "--parts`");
-  command.add_option("--bases", settings.bases, "Bases per pixel, 1 to 8")->capture_default_str();
-  command
-      .add_option(
-          "--aa", settings.antialias,
-          "Antialiasing of the layer color: none, lookup, sraa, sraa-geometry, supersample:N")
-      ->capture_default_str();
-  command.add_option("--layers", settings.layers,
-                     "Layers to write, with commas [all]: " + format_layers(parse_layers("")));
-  command.add_option("--threads", settings.threads, "0: one per core")->capture_default_str();
-  command.add_flag("--resume", settings.resume, "Go on where an interrupted run stopped");
-  command.add_flag("-q,--quiet", settings.quiet, "Print errors only");
-  command.add_flag("--json", settings.json, "Print the summary as JSON");
-}
-
-CLI::App* add_stress_options(CLI::App& app, StressSettings& settings) {
-  CLI::App* command =
-      app.add_subcommand("stress", "Try everything that must not break the denoiser");
-  command->add_flag("--json", settings.json, "Print JSON in place of the table");
-  command->add_flag("--long", settings.takes_long, "Also the cases that take minutes");
-  command->add_option("--case", settings.only, "One case, or one theme such as values");
-  command->add_option("--seed", settings.seed, "Other seeds, other noise")->capture_default_str();
-  command->add_option("-o,--output", settings.directory, "Directory for what failing cases leave")
-      ->capture_default_str();
-  return command;
-}
-
-// CLI11 explains over several lines at times; one is enough.
+// Errors of CLI11 may span lines.
 std::string one_line(std::string text) {
   std::replace(text.begin(), text.end(), '\n', ' ');
   text.erase(text.find_last_not_of(' ') + 1);
   return text;
 }
 
-int parse_and_run(std::span<const char* const> args, const Console& console) {
-  CLI::App app("Temporal denoising of path-traced indirect light", "eigenlight");
-  app.set_version_flag("--version", program_version());
-  app.require_subcommand(1);
-  RenderSettings settings;
-  CLI::App* render = app.add_subcommand("render", "Render and denoise a flythrough");
-  add_picture_options(*render, settings);
-  add_run_options(*render, settings);
-  const CLI::App* scenes = app.add_subcommand("scenes", "List the built-in scenes");
-  CLI::App* methods = app.add_subcommand("methods", "List the methods");
-  bool lists_parts = false;
-  methods->add_flag("--parts", lists_parts, "List the parts that --without can turn off");
-  add_evaluate_command(app, console.out);
-  add_train_pyramid_command(app, console);
-  add_judge_pyramid_command(app, console);
-  CompareSettings compare_settings;
-  const CLI::App* compare = add_compare_command(app, compare_settings);
-  StressSettings stress_settings;
-  const CLI::App* stress = add_stress_options(app, stress_settings);
+int fail(const Console& console, const std::string& what, ExitStatus status) {
+  console.err << "eigenlight: " << one_line(what) << '\n' << std::flush;
+  return status;
+}
+
+std::string usage_error(const CLI::App& app, const CLI::ParseError& error,
+                        std::span<const char* const> args) {
+  // CLI11 reports an unknown sub-command as a missing one.
+  const bool is_unknown = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr &&
+                          app.get_subcommands().empty() && args.size() > 1;
+  const std::string what =
+      is_unknown ? fmt::format("unknown command '{}'", args[1]) : one_line(error.what());
+  return what + "; see eigenlight --help";
+}
+
+// The exit status if the command line asks for help or is wrong; nothing if a command is to be run.
+std::optional<int> parse(CLI::App& app, std::span<const char* const> args, const Console& console) {
   try {
     app.parse(static_cast<int>(args.size()), args.data());
   } catch (const CLI::Success& help_or_version) {
     return app.exit(help_or_version, console.out, console.err);
-  } catch (const CLI::RequiredError& error) {
-    // Of a word that is no command CLI11 only says that a command is missing.
-    const bool names_none = app.get_subcommands().empty();
-    const std::string what = names_none && args.size() > 1
-                                 ? fmt::format("unknown command '{}'", args[1])
-                                 : one_line(error.what());
-    console.err << fmt::format("eigenlight: {}; see eigenlight --help\n", what);
-    return kBadUsage;
   } catch (const CLI::ParseError& error) {
-    console.err << fmt::format("eigenlight: {}; see eigenlight --help\n", one_line(error.what()));
-    return kBadUsage;
+    return fail(console, usage_error(app, error, args), kBadInput);
   }
-  if (scenes->parsed()) list_scenes(console.out);
-  if (methods->parsed()) (lists_parts ? list_parts : list_methods)(console.out);
-  if (compare->parsed()) return compare_command(compare_settings, console);
-  if (stress->parsed()) return stress_command(stress_settings, console);
-  return render->parsed() ? render_command(settings, console) : 0;
+  return std::nullopt;
+}
+
+int parse_and_run(std::span<const char* const> args, const Console& console) {
+  CLI::App app("Temporal denoising of path-traced indirect light", "eigenlight");
+  app.set_version_flag("--version", program_version());
+  app.require_subcommand(1);
+  // Scripts append a user's options to their own.
+  app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+  std::vector<Command> commands;
+  for (const auto add : kCommands) commands.push_back(add(app));
+  if (const std::optional<int> status = parse(app, args, console)) return *status;
+  for (const Command& command : commands) {
+    if (command.parser->parsed()) return command.run(console);
+  }
+  throw std::logic_error("a command line without a sub-command was accepted");
 }
 
 }  // namespace
@@ -138,20 +88,20 @@ int run_command_line(std::span<const char* const> args, Console console) {
     if (!console.command_line.empty()) console.command_line += ' ';
     console.command_line += quote_for_shell(word);
   }
-  const auto fail = [&](const std::string& what, int status) {
-    console.err << "eigenlight: " << one_line(what) << '\n' << std::flush;
-    return status;
-  };
   try {
-    return parse_and_run(args, console);
+    const int status = parse_and_run(args, console);
+    if (!console.out.flush()) throw std::runtime_error("cannot write to standard output");
+    return status;
+  } catch (const Interrupted&) {
+    return kInterrupted;
   } catch (const std::invalid_argument& error) {
-    return fail(error.what(), kBadUsage);
+    return fail(console, error.what(), kBadInput);
   } catch (const CheckpointError& error) {
-    return fail(error.what(), kBadUsage);
+    return fail(console, error.what(), kBadInput);
   } catch (const std::bad_alloc&) {
-    return fail("out of memory", kFailed);
+    return fail(console, "out of memory", kFailed);
   } catch (const std::exception& error) {
-    return fail(error.what(), kFailed);
+    return fail(console, error.what(), kFailed);
   }
 }
 

@@ -3,15 +3,14 @@
 #include <fmt/format.h>
 #include <xxhash.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "frame/tiles.h"
-#include "sequences/cli/interrupt.h"
-#include "sequences/cli/paper_command.h"
-#include "sequences/cli/progress.h"
+#include "sequences/cli/compare_options.h"
+#include "sequences/cli/compare_paper.h"
 #include "sequences/compare/compare_page.h"
 #include "sequences/compare/compare_pictures.h"
 #include "sequences/compare/compare_run.h"
@@ -61,14 +60,8 @@ struct OpenCase {
 
 class CompareJob {
  public:
-  CompareJob(const CompareSettings& settings, const Console& console)
-      : settings_(settings),
-        console_(console),
-        plan_(make_compare_plan(settings)),
-        interrupt_(settings.quiet ? InterruptGuard::Notice::kSilent
-                                  : InterruptGuard::Notice::kStderr) {
-    set_thread_count(settings.threads);
-  }
+  CompareJob(const CompareSettings& settings, const Job& job)
+      : job_(job), plan_(make_compare_plan(settings)) {}
 
   int run() {
     const CellStore store(plan_.directory / "cells", shared_identity(plan_));
@@ -87,7 +80,7 @@ class CompareJob {
       results.push_back(std::move(of_case));
     }
     write(results, std::move(galleries));
-    return 0;
+    return kSuccess;
   }
 
  private:
@@ -98,16 +91,9 @@ class CompareJob {
     int spp;
   };
 
-  void say(const std::string& text) const {
-    if (!settings_.quiet) console_.err << text << '\n' << std::flush;
-  }
-  [[nodiscard]] Progress::Style progress_style() const {
-    if (settings_.quiet) return Progress::Style::kNone;
-    return console_.err_is_terminal ? Progress::Style::kBar : Progress::Style::kLines;
-  }
   [[nodiscard]] RunControl control(Progress& progress) const {
     return {[&progress](int frame) { progress.frame_done(frame); },
-            [this] { return interrupt_.interrupted(); }};
+            [this] { return job_.interrupted(); }};
   }
   [[nodiscard]] OpenCase open_case(const CompareCase& one) const;
   [[nodiscard]] ReferenceIdentity identity_of(const CompareCase& one, const OpenCase& open) const;
@@ -120,21 +106,20 @@ class CompareJob {
                                      const CellStore& store) const;
   void write(const std::vector<CaseResults>& results, std::vector<PageGallery> galleries) const;
   [[nodiscard]] int stopped() const {
-    say(fmt::format("stopped; what is complete is kept; to go on:\n  {}", console_.command_line));
-    return kInterruptedStatus;
+    job_.say(
+        fmt::format("stopped; what is complete is kept; to go on:\n  {}", job_.command_line()));
+    return kInterrupted;
   }
 
-  const CompareSettings& settings_;
-  const Console& console_;
+  const Job& job_;
   ComparePlan plan_;
-  InterruptGuard interrupt_;
 };
 
 OpenCase CompareJob::open_case(const CompareCase& one) const {
   std::vector<std::string> notes;
   OpenCase open;
   open.scene = open_scene({one.scene, plan_.environment}, notes);
-  for (const std::string& note : notes) say(fmt::format("eigenlight: note: {}", note));
+  job_.say_notes(notes);
   open.hash = scene_hash(open.scene);
   open.animation = make_flythrough(open.scene, one.perturbation, plan_.extent);
   return open;
@@ -155,11 +140,12 @@ bool CompareJob::complete_references(const CompareCase& one, const OpenCase& ope
   for (const ReferenceCache::Half half : ReferenceCache::kHalves) {
     const std::vector<int> missing = references.missing(half, plan_.measured);
     if (missing.empty()) continue;
-    say(fmt::format("{}: reference {} of 2, {} spp, {} frames", one.name,
-                    half == ReferenceCache::Half::kA ? 1 : 2, plan_.reference_spp, missing.size()));
-    Progress progress(console_.err, progress_style(), 0, missing.size());
+    job_.say(fmt::format("{}: reference {} of 2, {} spp, {} frames", one.name,
+                         half == ReferenceCache::Half::kA ? 1 : 2, plan_.reference_spp,
+                         missing.size()));
+    Progress progress = job_.progress(0, missing.size());
     references.render(half, missing, open.animated(), control(progress));
-    if (interrupt_.interrupted()) return false;
+    if (job_.interrupted()) return false;
   }
   return true;
 }
@@ -191,14 +177,14 @@ bool CompareJob::measure(const Task& task, const CellStore& store, CaseResults& 
     if (!cell) throw std::logic_error("a cell that was saved is there");
     results.cells.push_back(std::move(*cell));
   }
-  return !interrupt_.interrupted();
+  return !job_.interrupted();
 }
 
 bool CompareJob::measure_missing(const Task& task, const std::vector<const Contender*>& missing,
                                  const CellStore& store) const {
-  say(fmt::format("{}, {} spp: {} methods, {} frames", task.one.name, task.spp, missing.size(),
-                  plan_.frames.size()));
-  Progress progress(console_.err, progress_style(), 0, plan_.frames.size());
+  job_.say(fmt::format("{}, {} spp: {} methods, {} frames", task.one.name, task.spp, missing.size(),
+                       plan_.frames.size()));
+  Progress progress = job_.progress(0, plan_.frames.size());
   const CompareGroup group{task.open.animated(),       task.references, task.spp,
                            task.open.scene.exposure,   missing,         pictures_of(task),
                            plan_.directory / "scratch"};
@@ -217,20 +203,23 @@ void CompareJob::write(const std::vector<CaseResults>& results,
   write_file_atomically(plan_.directory / "results.csv", to_csv(results));
   write_file_atomically(plan_.directory / "index.html",
                         to_html(compare_page(plan_, results, std::move(galleries))));
-  if (settings_.json) {
-    console_.out << json << std::flush;
-  } else if (!settings_.quiet) {
-    console_.out << to_table(plan_, results) << '\n'
-                 << (plan_.directory / "index.html").string() << '\n'
-                 << std::flush;
-  }
+  job_.print_results(json, fmt::format("{}\n{}\n", to_table(plan_, results),
+                                       (plan_.directory / "index.html").string()));
 }
 
 }  // namespace
 
-int compare_command(const CompareSettings& settings, const Console& console) {
-  if (!settings.paper.empty()) return paper_command(settings, console);
-  return CompareJob(settings, console).run();
+Command add_compare_command(CLI::App& app) {
+  CLI::App* parser =
+      app.add_subcommand("compare", "Compare error, time and memory of methods on the same frames");
+  const auto options = std::make_shared<CompareOptions>();
+  add_compare_options(*parser, *options);
+  return {parser, [options](const Console& console) {
+            const CompareSettings& settings = options->settings;
+            const Job job(options->job, console);
+            return settings.paper.empty() ? CompareJob(settings, job).run()
+                                          : compare_paper(settings, job);
+          }};
 }
 
 }  // namespace eigenlight

@@ -1,20 +1,20 @@
-// `eigenlight compare`: run time against error, of many methods on the same noisy frames.
+// `eigenlight compare`: error and time of many methods on the same noisy frames.
 #pragma once
 
-#include "sequences/cli/console.h"
-#include "sequences/compare/compare_plan.h"
+#include "sequences/cli/command.h"
 
 namespace eigenlight {
 
-/// Runs it and returns the exit status: 0, or kInterruptedStatus after Ctrl-C, when what is
-/// complete (frames of references, methods at a sample count) is kept, and the same command goes
-/// on from there. Writes into settings.directory:
+/// Exit status 0, or kInterrupted after Ctrl-C. An interrupted run keeps what is complete (frames
+/// of references, methods at a sample count), and the same command goes on from there. Writes into
+/// the directory of -o:
 ///   index.html    the page (compare_page.h)
-///   results.json  everything (compare_results.h)
+///   results.json  all results (compare_results.h)
 ///   results.csv   a line for each scene, method and sample count
 ///   frames/       the measured frames, SCENE/METHOD/frame.####.exr, at the sample count shown
 ///   cells/        results so far, each under the hash of all that decides it, the program included
-/// Throws std::invalid_argument for a bad option, std::runtime_error for all else.
-[[nodiscard]] int compare_command(const CompareSettings& settings, const Console& console);
+/// With --paper it reruns a paper instead (compare_paper.h). Throws std::invalid_argument for a bad
+/// option, std::runtime_error for all other errors.
+[[nodiscard]] Command add_compare_command(CLI::App& app);
 
 }  // namespace eigenlight

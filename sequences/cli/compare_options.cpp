@@ -50,9 +50,6 @@ void add_how(CLI::App& command, CompareSettings& settings) {
   command.add_option(
       "--equal-time", settings.equal_time,
       "Milliseconds a frame at which errors are compared [ours at the lowest --spp]");
-  command.add_option("--threads", settings.threads, "0: one per core")->capture_default_str();
-  command.add_flag("-q,--quiet", settings.quiet, "Print errors only");
-  command.add_flag("--json", settings.json, "Print results.json in place of the table");
 }
 
 // Papers come with scenes, methods and sample counts of their own.
@@ -78,13 +75,11 @@ void add_paper(CLI::App& command, CompareSettings& settings) {
 
 }  // namespace
 
-const CLI::App* add_compare_command(CLI::App& app, CompareSettings& settings) {
-  CLI::App* command =
-      app.add_subcommand("compare", "Error, time and memory of methods on the same noisy frames");
-  add_what(*command, settings);
-  add_how(*command, settings);
-  add_paper(*command, settings);
-  return command;
+void add_compare_options(CLI::App& command, CompareOptions& options) {
+  add_what(command, options.settings);
+  add_how(command, options.settings);
+  add_job_options(command, options.job, "Print results.json instead of the table");
+  add_paper(command, options.settings);
 }
 
 }  // namespace eigenlight

@@ -1,15 +1,17 @@
-// The command line of `eigenlight compare`.
+// The options of `eigenlight compare`.
 #pragma once
 
+#include "sequences/cli/job.h"
 #include "sequences/compare/compare_plan.h"
-
-namespace CLI {
-class App;
-}
 
 namespace eigenlight {
 
-/// Adds the sub-command, whose options end up in `settings`, which must outlive `app`.
-[[nodiscard]] const CLI::App* add_compare_command(CLI::App& app, CompareSettings& settings);
+struct CompareOptions {
+  CompareSettings settings;
+  JobOptions job;
+};
+
+/// Adds the options to the sub-command. `options` must outlive it.
+void add_compare_options(CLI::App& command, CompareOptions& options);
 
 }  // namespace eigenlight

@@ -1,4 +1,4 @@
-// Where a command speaks to.
+// The streams that a command writes to.
 #pragma once
 
 #include <ostream>
@@ -10,8 +10,8 @@ struct Console {
   std::ostream& out;  ///< results
   std::ostream& err;  ///< progress, notes, errors
   bool err_is_terminal = false;
-  std::string
-      command_line;  ///< what the user typed, quoted for a shell (filled by run_command_line)
+  /// The command line, quoted for a shell. run_command_line() fills it in.
+  std::string command_line = {};
 };
 
 }  // namespace eigenlight

@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <ostream>
 
 #include "sequences/files/atomic_file.h"
+#include "sequences/metrics/evaluate.h"
 #include "sequences/metrics/figures_json.h"
 
 namespace eigenlight {
@@ -41,71 +41,7 @@ std::string cell(const std::optional<double>& value) {
   return fmt::format("{:>14}", value ? fmt::format("{:.6g}", *value) : "-");
 }
 
-struct CommandOptions {
-  EvaluateOptions evaluate;
-  std::string test_layer;
-  double reference_noise = 0.0;
-  int step = 0;
-  bool prints_json = false;
-  std::string directory;
-};
-
-void add_inputs(CLI::App& command, CommandOptions& options) {
-  command
-      .add_option("-t,--test", options.evaluate.test, "Images to judge: A.####.exr, or one file")
-      ->required();
-  command.add_option("-r,--reference", options.evaluate.reference, "What they should be")
-      ->required();
-  command.add_option("--reference-b", options.evaluate.reference_b,
-                     "Second, independent reference: takes the noise of both out of the figures");
-  command.add_option("--reference-noise", options.reference_noise,
-                     "relMSE of a single reference itself, subtracted from relmse");
-  command
-      .add_option("-l,--layer", options.evaluate.layer,
-                  "Layer of the reference; \"\" or color: R, G, B")
-      ->capture_default_str();
-  command.add_option("--test-layer", options.test_layer,
-                     "Layer of the test, if it has another name");
-  command.add_option("--frames", options.evaluate.frames,
-                     "Such as 40-59 or 1-10,20; without it all that are there");
-  command.add_option("--step", options.step,
-                     "Frame of a light step: also measure lag [what render wrote to the files]");
-}
-
-void add_outputs(CLI::App& command, CommandOptions& options) {
-  command
-      .add_option("--exposure", options.evaluate.metrics.exposure,
-                  "Factor before the sRGB curve of PSNR, SSIM and tPSNR, and for flicker")
-      ->capture_default_str();
-  command.add_flag("--flicker", options.evaluate.metrics.measures_flicker,
-                   "Also difference of consecutive frames; camera at rest only");
-  command.add_flag("--skip-bad", options.evaluate.skips_bad,
-                   "Leave out bad frames and pixels, and count them");
-  command.add_flag("--json", options.prints_json, "Print JSON in place of the table");
-  command.add_option("-o,--output", options.directory, "Directory for evaluate.json");
-}
-
-void run(const CLI::App& command, const CommandOptions& given, std::ostream& out) {
-  EvaluateOptions options = given.evaluate;
-  if (command.count("--test-layer") > 0) options.test_layer = given.test_layer;
-  if (command.count("--reference-noise") > 0) {
-    options.metrics.reference_noise = given.reference_noise;
-  }
-  if (command.count("--step") > 0) options.step = given.step;
-  const Evaluation evaluation = evaluate(options);
-  const std::string json = to_json(evaluation).dump(2) + "\n";
-  if (!given.directory.empty()) {
-    std::filesystem::create_directories(given.directory);
-    write_file_atomically(std::filesystem::path(given.directory) / "evaluate.json",
-                          std::string_view(json));
-  }
-  out << (given.prints_json ? json : to_table(evaluation)) << std::flush;
-  if (!out) throw std::runtime_error("cannot write to standard output");
-}
-
-}  // namespace
-
-nlohmann::ordered_json to_json(const Evaluation& evaluation) {
+Json to_json(const Evaluation& evaluation) {
   Json json = {{"frames", evaluation.frames.size()}};
   json.update(to_json(evaluation.mean));
   if (evaluation.step) json["step"] = *evaluation.step;
@@ -156,13 +92,69 @@ std::string to_table(const Evaluation& evaluation) {
   return text;
 }
 
-void add_evaluate_command(CLI::App& app, std::ostream& out) {
-  CLI::App* command = app.add_subcommand(
+struct EvaluateCommand {
+  EvaluateOptions evaluate;
+  bool json = false;
+  std::string directory;
+};
+
+void add_inputs(CLI::App& command, EvaluateOptions& options) {
+  command
+      .add_option("-t,--test", options.test,
+                  "Images to measure: a pattern such as A.####.exr, or one file")
+      ->required();
+  command
+      .add_option("-r,--reference", options.reference,
+                  "Images of the truth: a pattern, or one file")
+      ->required();
+  command.add_option("--reference-b", options.reference_b,
+                     "Second, independent reference; removes the noise of both references from "
+                     "the figures");
+  command.add_option("--reference-noise", options.metrics.reference_noise,
+                     "relMSE of a single reference, subtracted from relmse");
+  command.add_option("-l,--layer", options.layer, "Layer of the reference; \"\" or color: R, G, B")
+      ->capture_default_str();
+  command.add_option("--test-layer", options.test_layer,
+                     "Layer of the test, if its name differs from --layer");
+  command.add_option("--frames", options.frames, "Such as 40-59 or 1-10,20 [all that exist]");
+  command.add_option("--step", options.step,
+                     "Frame of a light step: also measure lag [as the files say]");
+}
+
+void add_outputs(CLI::App& command, EvaluateCommand& options) {
+  MetricOptions& metrics = options.evaluate.metrics;
+  command
+      .add_option("--exposure", metrics.exposure,
+                  "Factor before the sRGB curve of PSNR, SSIM and tPSNR, and for flicker")
+      ->capture_default_str();
+  command.add_flag("--flicker", metrics.measures_flicker,
+                   "Also measure the difference of consecutive frames; for a camera at rest");
+  command.add_flag("--skip-bad", options.evaluate.skips_bad,
+                   "Leave out and count bad frames and pixels");
+  command.add_flag("--json", options.json, "Print JSON instead of the table");
+  command.add_option("-o,--output", options.directory, "Directory for evaluate.json");
+}
+
+int run(const EvaluateCommand& command, const Console& console) {
+  const Evaluation evaluation = evaluate(command.evaluate);
+  const std::string json = to_json(evaluation).dump(2) + "\n";
+  if (!command.directory.empty()) {
+    std::filesystem::create_directories(command.directory);
+    write_file_atomically(std::filesystem::path(command.directory) / "evaluate.json", json);
+  }
+  console.out << (command.json ? json : to_table(evaluation));
+  return kSuccess;
+}
+
+}  // namespace
+
+Command add_evaluate_command(CLI::App& app) {
+  CLI::App* parser = app.add_subcommand(
       "evaluate", "Measure images against references: error, similarity, flicker");
-  const auto options = std::make_shared<CommandOptions>();
-  add_inputs(*command, *options);
-  add_outputs(*command, *options);
-  command->callback([command, options, &out] { run(*command, *options, out); });
+  const auto command = std::make_shared<EvaluateCommand>();
+  add_inputs(*parser, command->evaluate);
+  add_outputs(*parser, *command);
+  return {parser, [command](const Console& console) { return run(*command, console); }};
 }
 
 }  // namespace eigenlight

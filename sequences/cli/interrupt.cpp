@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cerrno>
 
+#include "sequences/cli/command.h"
 #include "sequences/files/atomic_file.h"
 
 namespace eigenlight {
@@ -20,11 +21,11 @@ void on_signal(int) {
   const int saved_errno = errno;
   if (was_interrupted.exchange(true)) {
     remove_unfinished_file();
-    ::_exit(kInterruptedStatus);
+    ::_exit(kInterrupted);
   }
   if (says_so) {
-    constexpr char kText[] = "\neigenlight: finishing this frame; again to stop at once\n";
-    // Nothing can be done about a terminal that is gone.
+    constexpr char kText[] = "\neigenlight: finishing the current step; again to stop at once\n";
+    // The terminal may be gone; there is nothing to do about that.
     [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, kText, sizeof(kText) - 1);
   }
   errno = saved_errno;

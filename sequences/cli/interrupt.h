@@ -1,17 +1,14 @@
-// Ctrl-C: once to stop after the frame in hand, twice to stop at once.
+// Ctrl-C: once to stop after the current step, twice to stop at once.
 #pragma once
 
 namespace eigenlight {
 
-/// Exit status of a run that was interrupted, by SIGINT or SIGTERM alike (128 + SIGINT).
-inline constexpr int kInterruptedStatus = 130;
-
 /// While it lives, the first SIGINT or SIGTERM only sets a flag; a second one removes the
-/// unfinished file, if any, and ends the process with kInterruptedStatus. The handlers before it
-/// come back afterwards. One at a time.
+/// unfinished file, if any, and ends the process with kInterrupted (command.h). The destructor
+/// restores the handlers that were there before. One at a time.
 class InterruptGuard {
  public:
-  enum class Notice { kSilent, kStderr };  ///< whether the first signal says what it does
+  enum class Notice { kSilent, kStderr };  ///< whether the first signal prints a line
 
   explicit InterruptGuard(Notice notice);
   ~InterruptGuard();

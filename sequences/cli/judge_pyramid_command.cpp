@@ -5,21 +5,21 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "frame/tiles.h"
+#include "sequences/cli/job.h"
 #include "sequences/lab/judge_pyramid.h"
 
 namespace eigenlight {
 namespace {
 
-// Not those that the table was trained on: painted pictures from here on, another frame.
+// Painted pictures from this seed on and this frame are not among those that trained the table.
 constexpr std::uint32_t kSeed = 1000;
 constexpr int kFrame = 40;
 
-struct CommandOptions {
+struct JudgeCommand {
   PyramidPictures pictures{.painted = 6, .seed = kSeed, .frame = kFrame};
   std::vector<int> radii{2, 4, 8, 16, 32, 64};
   int side = 128;
-  int threads = 0;
+  JobOptions job;
 };
 
 std::string row(const PyramidJudgement& j) {
@@ -34,40 +34,45 @@ std::string row(const PyramidJudgement& j) {
                      cell(j.trained, j.untrained), cell(j.untrained, j.trained));
 }
 
-void run(const CommandOptions& options, const Console& console) {
-  options.pictures.validate();
-  EL_CHECK(options.side >= 8 && options.side <= 1024, "side {}: expected 8 to 1024", options.side);
-  for (const int radius : options.radii) {
+int run(const JudgeCommand& command, const Console& console) {
+  command.pictures.validate();
+  EL_CHECK(command.side >= 8 && command.side <= 1024, "side {}: expected 8 to 1024", command.side);
+  for (const int radius : command.radii) {
     EL_CHECK(radius >= 1 && radius <= 64, "radius {}: expected 1 to 64", radius);
   }
-  set_thread_count(options.threads);
+  const Job job(command.job, console);
   console.out << "| radius | pictures | | trained | untrained |\n"
                  "| ---: | --- | ---: | ---: | ---: |\n";
-  for (const int radius : options.radii) {
-    for (const PyramidJudgement& j : judge_pyramid(options.pictures, radius, options.side)) {
+  for (const int radius : command.radii) {
+    job.stop_if_interrupted("stopped");
+    for (const PyramidJudgement& j : judge_pyramid(command.pictures, radius, command.side)) {
       console.out << row(j) << std::flush;
     }
   }
+  return kSuccess;
 }
 
 }  // namespace
 
-void add_judge_pyramid_command(CLI::App& app, const Console& console) {
-  CLI::App* command = app.add_subcommand(
+Command add_judge_pyramid_command(CLI::App& app) {
+  CLI::App* parser = app.add_subcommand(
       "judge-pyramid", "Compare the pyramid filter, trained and untrained, with brute force");
-  const auto options = std::make_shared<CommandOptions>();
-  command->add_option("--images", options->pictures.images,
-                      "EXR, PNG or JPEG files to be judged by, besides the painted pictures");
-  command->add_option("--painted", options->pictures.painted, "Pictures painted by code")
+  const auto command = std::make_shared<JudgeCommand>();
+  parser->add_option("--images", command->pictures.images,
+                     "EXR, PNG or JPEG files to judge by, in addition to the painted pictures");
+  parser->add_option("--painted", command->pictures.painted, "Number of painted pictures")
       ->capture_default_str();
-  command->add_option("--scenes", options->pictures.scenes, "Built-in scenes, one noisy frame each")
+  parser
+      ->add_option("--scenes", command->pictures.scenes,
+                   "Built-in scenes to judge by, one noisy frame each")
       ->capture_default_str();
-  command->add_option("--radii", options->radii, "Pixels, 1 to 64")
+  parser->add_option("--radii", command->radii, "Comma-separated radii in pixels, 1 to 64")
       ->delimiter(',')
       ->capture_default_str();
-  command->add_option("--side", options->side, "Of each picture, pixels")->capture_default_str();
-  command->add_option("--threads", options->threads, "0: one per core")->capture_default_str();
-  command->callback([options, &console] { run(*options, console); });
+  parser->add_option("--side", command->side, "Width and height of each picture in pixels")
+      ->capture_default_str();
+  add_job_options(*parser, command->job);
+  return {parser, [command](const Console& console) { return run(*command, console); }};
 }
 
 }  // namespace eigenlight

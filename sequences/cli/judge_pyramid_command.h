@@ -1,16 +1,12 @@
 // `eigenlight judge-pyramid`: a table of the pyramid filter's trained weights.
 #pragma once
 
-#include "sequences/cli/console.h"
-
-namespace CLI {
-class App;
-}
+#include "sequences/cli/command.h"
 
 namespace eigenlight {
 
-/// Adds the sub-command, which judges when it is parsed and prints a table in Markdown to
-/// `console.out`. `console` must outlive `app`.
-void add_judge_pyramid_command(CLI::App& app, const Console& console);
+/// Prints a table in Markdown. Throws Interrupted after Ctrl-C, std::invalid_argument for a bad
+/// option, std::runtime_error for all other errors.
+[[nodiscard]] Command add_judge_pyramid_command(CLI::App& app);
 
 }  // namespace eigenlight

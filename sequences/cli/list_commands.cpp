@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,7 +20,7 @@ struct Row {
   std::string name, what;
 };
 
-/// One line a row, the texts below each other two spaces to the right of the longest name.
+// One line per row; texts are aligned two spaces to the right of the longest name.
 void list(std::ostream& out, const std::vector<Row>& rows, std::string_view indent = "") {
   std::size_t width = 0;
   for (const Row& row : rows) width = std::max(width, row.name.size());
@@ -60,6 +62,23 @@ void list_parts(std::ostream& out) {
     }
     list(out, rows, "  ");
   }
+}
+
+Command add_scenes_command(CLI::App& app) {
+  return {app.add_subcommand("scenes", "List the built-in scenes"), [](const Console& console) {
+            list_scenes(console.out);
+            return kSuccess;
+          }};
+}
+
+Command add_methods_command(CLI::App& app) {
+  CLI::App* parser = app.add_subcommand("methods", "List the methods");
+  const auto parts = std::make_shared<bool>(false);
+  parser->add_flag("--parts", *parts, "List the parts that --without can turn off");
+  return {parser, [parts](const Console& console) {
+            (*parts ? list_parts : list_methods)(console.out);
+            return kSuccess;
+          }};
 }
 
 }  // namespace eigenlight

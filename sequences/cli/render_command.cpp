@@ -2,14 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
+#include <memory>
 
-#include "frame/tiles.h"
-#include "sequences/cli/interrupt.h"
-#include "sequences/cli/progress.h"
+#include "sequences/cli/job.h"
 #include "sequences/files/version.h"
 #include "sequences/pages/report.h"
+#include "sequences/runs/render_plan.h"
 #include "sequences/runs/run_directory.h"
 #include "sequences/runs/run_log.h"
 #include "sequences/runs/scene_source.h"
@@ -58,68 +59,53 @@ std::vector<ExrAttribute> file_attributes(const RunDescription& run) {
           {"eigenlight.exposure", run.exposure}};
 }
 
-Progress::Style progress_style(const RenderSettings& settings, const Console& console) {
-  if (settings.quiet) return Progress::Style::kNone;
-  return console.err_is_terminal ? Progress::Style::kBar : Progress::Style::kLines;
-}
-
 // The frame loop of one process.
-class RenderJob {
+class RenderRun {
  public:
-  RenderJob(const RenderSettings& settings, const Console& console)
-      : settings_(settings),
-        console_(console),
-        plan_(make_plan(settings)),
-        interrupt_(settings.quiet ? InterruptGuard::Notice::kSilent
-                                  : InterruptGuard::Notice::kStderr) {
-    set_thread_count(settings.threads);
-  }
+  RenderRun(const RenderSettings& settings, const Job& job)
+      : settings_(settings), job_(job), plan_(make_plan(settings)) {}
 
   int run();
 
  private:
-  void say(const std::string& text) const {
-    if (!settings_.quiet) console_.err << text << '\n' << std::flush;
-  }
-  Scene load_scene_and_say() const;
+  [[nodiscard]] Scene load() const;
   void say_what_comes(const FrameWriter& writer) const;
   // Renders frames from `position_` on, until the last one or an interrupt.
   void render(const Animation& animation, const Scene& scene, FrameWriter& writer);
-  // Antialiases the frame that the denoiser pulled last, if that is asked for and will be seen.
+  // Antialiases the frame that the denoiser pulled last, if the picture is written, and writes it.
   FrameOutput write_frame(LiveSource& source, const Planes<3>& indirect, FrameWriter& writer);
   int stopped() const;
-  int finished();
+  int finished() const;
 
   const RenderSettings& settings_;
-  const Console& console_;
+  const Job& job_;
   RenderPlan plan_;
-  InterruptGuard interrupt_;
   std::unique_ptr<Denoiser> denoiser_;
   std::unique_ptr<RunDirectory> directory_;
-  std::size_t position_ = 0;
+  std::size_t position_ = 0;  // frames that are complete
   Planes<3> picture_;
   RunTotals totals_;
 };
 
-Scene RenderJob::load_scene_and_say() const {
+Scene RenderRun::load() const {
   std::vector<std::string> notes;
   Scene scene = open_scene({settings_.scene, settings_.environment}, notes);
-  for (const std::string& note : notes) say("eigenlight: note: " + note);
+  job_.say_notes(notes);
   return scene;
 }
 
-void RenderJob::say_what_comes(const FrameWriter& writer) const {
+void RenderRun::say_what_comes(const FrameWriter& writer) const {
   const std::size_t count = plan_.frames.size();
-  if (position_ == count) return say(fmt::format("all {} frames are complete", count));
+  if (position_ == count) return job_.say(fmt::format("all {} frames are complete", count));
   std::string text = fmt::format("rendering {} frames, {} to {}", count - position_,
                                  writer.path(plan_.frames[position_]).string(),
                                  writer.path(plan_.frames.back()).string());
   if (settings_.resume) text += fmt::format("; {} complete before", position_);
-  say(text);
+  job_.say(text);
 }
 
-int RenderJob::run() {
-  Scene scene = load_scene_and_say();
+int RenderRun::run() {
+  Scene scene = load();
   const RunDescription description = describe(settings_, plan_, scene);
   const auto animation = make_flythrough(scene, plan_.perturbation, plan_.render.extent);
   denoiser_ = make_denoiser(
@@ -137,15 +123,14 @@ int RenderJob::run() {
   return position_ < plan_.frames.size() ? stopped() : finished();
 }
 
-void RenderJob::render(const Animation& animation, const Scene& scene, FrameWriter& writer) {
+void RenderRun::render(const Animation& animation, const Scene& scene, FrameWriter& writer) {
   const auto start = Clock::now();
   RunLog log(directory_->path(), plan_.frames, position_);
-  Progress progress(console_.err, progress_style(settings_, console_), position_,
-                    plan_.frames.size());
+  Progress progress = job_.progress(position_, plan_.frames.size());
   if (position_ == plan_.frames.size()) return;
   LiveSource source(scene, animation, plan_.render, plan_.frames, position_);
   auto saved = Clock::now();
-  for (; position_ < plan_.frames.size() && !interrupt_.interrupted(); ++position_) {
+  for (; position_ < plan_.frames.size() && !job_.interrupted(); ++position_) {
     const Planes<3>* indirect = denoiser_->step(source);
     if (!indirect) throw std::logic_error("the source ended before the last frame");
     const FrameOutput output = write_frame(source, *indirect, writer);
@@ -160,7 +145,7 @@ void RenderJob::render(const Animation& animation, const Scene& scene, FrameWrit
   totals_.seconds = std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-FrameOutput RenderJob::write_frame(LiveSource& source, const Planes<3>& indirect,
+FrameOutput RenderRun::write_frame(LiveSource& source, const Planes<3>& indirect,
                                    FrameWriter& writer) {
   FrameOutput output;
   StageClock clock;
@@ -176,26 +161,79 @@ FrameOutput RenderJob::write_frame(LiveSource& source, const Planes<3>& indirect
   return output;
 }
 
-int RenderJob::stopped() const {
-  say(fmt::format("stopped after {} of {} frames; to go on:\n  {}{}", position_,
-                  plan_.frames.size(), console_.command_line, settings_.resume ? "" : " --resume"));
-  return kInterruptedStatus;
+int RenderRun::stopped() const {
+  job_.say(fmt::format("stopped after {} of {} frames; to go on:\n  {}{}", position_,
+                       plan_.frames.size(), job_.command_line(),
+                       settings_.resume ? "" : " --resume"));
+  return kInterrupted;
 }
 
-int RenderJob::finished() {
+int RenderRun::finished() const {
   write_report(directory_->path());
-  if (settings_.json) {
-    console_.out << totals_.to_json(directory_->path()) << std::flush;
-  } else if (!settings_.quiet) {
-    console_.out << totals_.to_text(directory_->path()) << std::flush;
-  }
-  return 0;
+  job_.print_results(totals_.to_json(directory_->path()), totals_.to_text(directory_->path()));
+  return kSuccess;
 }
+
+void add_picture_options(CLI::App& command, RenderSettings& settings) {
+  command
+      .add_option("scene", settings.scene,
+                  "Name of a built-in scene (see `eigenlight scenes`), or a file: scene.json, "
+                  ".gltf, .glb or .obj")
+      ->required();
+  command.add_option("-o,--output", settings.directory, "Directory for frames, logs and page")
+      ->required();
+  command.add_option("--frames", settings.frames, "Such as 7, 0-47, 5-1, 1-100x5 or 1-9,20")
+      ->capture_default_str();
+  command.add_option("--size", settings.size, "Width and height in pixels")->capture_default_str();
+  command.add_option(
+      "--spp", settings.spp,
+      fmt::format("Samples of indirect light per pixel [3; reference: {}]", kReferenceSpp));
+  command.add_option("--bounces", settings.bounces, "Bounces of indirect light")
+      ->capture_default_str();
+  command.add_option("--seed", settings.seed, "Seed of the noise")->capture_default_str();
+  command
+      .add_option(
+          "--perturb", settings.perturb,
+          "What changes: none, lights, objects, all, or step[:FRAME], one jump of the light")
+      ->capture_default_str();
+  command.add_flag("--environment", settings.environment,
+                   "Light a scene.json by its environment map instead of its suns and sky");
+}
+
+void add_run_options(CLI::App& command, RenderSettings& settings) {
+  command.add_option("--method", settings.method, "Denoiser; see `eigenlight methods`")
+      ->capture_default_str();
+  command.add_option("--without", settings.without,
+                     "Comma-separated parts of the method to turn off; see `eigenlight methods "
+                     "--parts`");
+  command.add_option("--bases", settings.bases, "Bases per pixel, 1 to 8")->capture_default_str();
+  command
+      .add_option("--aa", settings.antialias,
+                  "Antialiasing of the layer color: none, lookup, sraa, sraa-geometry or "
+                  "supersample:N")
+      ->capture_default_str();
+  command.add_option("--layers", settings.layers,
+                     "Comma-separated layers to write [all]: " + format_layers(parse_layers("")));
+  command.add_flag("--resume", settings.resume, "Go on where an interrupted run stopped");
+}
+
+struct RenderCommand {
+  RenderSettings settings;
+  JobOptions job;
+};
 
 }  // namespace
 
-int render_command(const RenderSettings& settings, const Console& console) {
-  return RenderJob(settings, console).run();
+Command add_render_command(CLI::App& app) {
+  CLI::App* parser = app.add_subcommand("render", "Render and denoise a flythrough");
+  const auto command = std::make_shared<RenderCommand>();
+  add_picture_options(*parser, command->settings);
+  add_run_options(*parser, command->settings);
+  add_job_options(*parser, command->job, "Print the summary as JSON");
+  return {parser, [command](const Console& console) {
+            const Job job(command->job, console);
+            return RenderRun(command->settings, job).run();
+          }};
 }
 
 }  // namespace eigenlight

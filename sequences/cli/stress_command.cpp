@@ -2,18 +2,29 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "frame/named.h"
 #include "sequences/stress/stress_case.h"
 
 namespace eigenlight {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+struct StressSettings {
+  bool json = false;
+  bool takes_long = false;  // also the cases that take minutes
+  std::string only;         // name of a case or of a theme; empty: all
+  std::uint32_t seed = 0;
+  std::string directory = "out/stress";  // for the records of failing cases
+};
 
 struct Result {
   StressCase what;
@@ -23,16 +34,15 @@ struct Result {
 };
 
 std::vector<StressCase> chosen(const StressSettings& settings) {
+  const std::vector<StressCase> all = stress_cases();
   std::vector<StressCase> found;
-  std::string names;
-  for (const StressCase& c : stress_cases()) {
-    names += fmt::format("{}{}", names.empty() ? "" : ", ", c.name);
+  for (const StressCase& c : all) {
     const bool theme = c.name.starts_with(settings.only + ".");
     const bool in_turn = settings.takes_long || !c.is_long;
     if (settings.only == c.name || (in_turn && (theme || settings.only.empty())))
       found.push_back(c);
   }
-  EL_CHECK(!found.empty(), "unknown case '{}'; known: {}", settings.only, names);
+  EL_CHECK(!found.empty(), "unknown case '{}'; known: {}", settings.only, names_of(all));
   return found;
 }
 
@@ -82,9 +92,7 @@ void record(const Result& result, const StressSettings& settings, const Console&
       result.what.name, directory.string(), result.what.name, settings.seed);
 }
 
-}  // namespace
-
-int stress_command(const StressSettings& settings, const Console& console) {
+int run_cases(const StressSettings& settings, const Console& console) {
   const std::vector<StressCase> cases = chosen(settings);
   Json list = Json::array();
   if (!settings.json) {
@@ -109,7 +117,23 @@ int stress_command(const StressSettings& settings, const Console& console) {
     console.out << fmt::format("{} of {} cases within their bounds\n",
                                cases.size() - static_cast<std::size_t>(broken), cases.size());
   }
-  return broken > 0 ? 1 : 0;
+  return broken > 0 ? kFailed : kSuccess;
+}
+
+}  // namespace
+
+Command add_stress_command(CLI::App& app) {
+  CLI::App* parser = app.add_subcommand("stress", "Run cases that must not break the denoiser");
+  const auto settings = std::make_shared<StressSettings>();
+  parser->add_flag("--json", settings->json, "Print JSON instead of the table");
+  parser->add_flag("--long", settings->takes_long, "Also run cases that take minutes");
+  parser->add_option("--case", settings->only, "One case, or one theme such as values");
+  parser->add_option("--seed", settings->seed, "Seed of the noise")->capture_default_str();
+  parser
+      ->add_option("-o,--output", settings->directory,
+                   "Directory for the frames and states of failing cases")
+      ->capture_default_str();
+  return {parser, [settings](const Console& console) { return run_cases(*settings, console); }};
 }
 
 }  // namespace eigenlight

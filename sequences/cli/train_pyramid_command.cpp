@@ -5,53 +5,52 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "frame/tiles.h"
-#include "sequences/cli/interrupt.h"
+#include "sequences/cli/job.h"
 #include "sequences/files/atomic_file.h"
 #include "sequences/lab/train_pyramid.h"
 
 namespace eigenlight {
 namespace {
 
-struct CommandOptions {
+struct TrainCommand {
   TrainPyramidOptions train;
   std::string output;
-  int threads = 0;
+  JobOptions job;
 };
 
-void run(const CommandOptions& options, const Console& console) {
-  const InterruptGuard guard(InterruptGuard::Notice::kSilent);
-  set_thread_count(options.threads);
+int run(const TrainCommand& command, const Console& console) {
+  const Job job(command.job, console);
   const PyramidTable table = train_pyramid_table(
-      options.train,
+      command.train,
       [&](const TrainedRadius& done) {
-        console.err << fmt::format("radius {:>2}: loss {:.6f} untrained, {:.6f} trained\n",
-                                   done.radius, done.untrained_loss, done.trained_loss)
-                    << std::flush;
+        job.say(fmt::format("radius {:>2}: loss {:.6f} untrained, {:.6f} trained", done.radius,
+                            done.untrained_loss, done.trained_loss));
       },
-      [&] { return !guard.interrupted(); });
-  write_file_atomically(options.output, pyramid_table_source(table, console.command_line));
+      [&] { job.stop_if_interrupted("stopped; no table was written"); });
+  write_file_atomically(command.output, pyramid_table_source(table, job.command_line()));
+  return kSuccess;
 }
 
 }  // namespace
 
-void add_train_pyramid_command(CLI::App& app, const Console& console) {
-  CLI::App* command =
+Command add_train_pyramid_command(CLI::App& app) {
+  CLI::App* parser =
       app.add_subcommand("train-pyramid", "Fit the weights of the pyramid filter to brute force");
-  const auto options = std::make_shared<CommandOptions>();
-  command->add_option("-o,--output", options->output, "C++ source to write")->required();
-  command->add_option("--images", options->train.pictures.images,
-                      "EXR, PNG or JPEG files to learn from, besides the painted pictures");
-  command->add_option("--painted", options->train.pictures.painted, "Pictures painted by code")
+  const auto command = std::make_shared<TrainCommand>();
+  TrainPyramidOptions& train = command->train;
+  parser->add_option("-o,--output", command->output, "C++ source to write")->required();
+  parser->add_option("--images", train.pictures.images,
+                     "EXR, PNG or JPEG files to learn from, in addition to the painted pictures");
+  parser->add_option("--painted", train.pictures.painted, "Number of painted pictures")
       ->capture_default_str();
-  command
-      ->add_option("--scenes", options->train.pictures.scenes,
-                   "Built-in scenes to learn edges of geometry from")
+  parser
+      ->add_option("--scenes", train.pictures.scenes,
+                   "Built-in scenes to learn geometric edges from")
       ->capture_default_str();
-  command->add_option("--steps", options->train.training.steps, "Steps of descent for each radius")
+  parser->add_option("--steps", train.training.steps, "Steps of gradient descent for each radius")
       ->capture_default_str();
-  command->add_option("--threads", options->threads, "0: one per core")->capture_default_str();
-  command->callback([options, &console] { run(*options, console); });
+  add_job_options(*parser, command->job);
+  return {parser, [command](const Console& console) { return run(*command, console); }};
 }
 
 }  // namespace eigenlight

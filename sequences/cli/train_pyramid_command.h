@@ -1,17 +1,13 @@
-// `eigenlight train-pyramid`: the table of the pyramid filter's weights.
+// `eigenlight train-pyramid`: fits the weights of the pyramid filter.
 #pragma once
 
-#include "sequences/cli/console.h"
-
-namespace CLI {
-class App;
-}
+#include "sequences/cli/command.h"
 
 namespace eigenlight {
 
-/// Adds the sub-command, which trains when it is parsed: one line for each radius to `console.err`,
-/// and the table, a C++ source, into the file of -o. Errors leave it as std::runtime_error or
-/// std::invalid_argument. `console` must outlive `app`.
-void add_train_pyramid_command(CLI::App& app, const Console& console);
+/// Prints one line for each radius and writes the table, a C++ source, to the file of -o. Throws
+/// Interrupted after Ctrl-C, with nothing written, std::invalid_argument for a bad option,
+/// std::runtime_error for all other errors.
+[[nodiscard]] Command add_train_pyramid_command(CLI::App& app);
 
 }  // namespace eigenlight

@@ -75,7 +75,7 @@ void add_method(const std::string& name, std::vector<Contender>& contenders) {
 
 // `eigenlight`, if it is not there yet, and once more without each of its parts.
 void add_ablations(std::vector<Contender>& contenders) {
-  const std::string name = default_method();
+  const std::string name(kDefaultMethod);
   const Method* method = find_method(name);
   EL_CHECK(!method->parts.empty(), "ablate: method '{}' has no parts to turn off", name);
   const bool present = std::any_of(contenders.begin(), contenders.end(),
@@ -137,7 +137,7 @@ int ComparePlan::shown_spp() const {
 const Contender& ComparePlan::ours() const {
   const auto found =
       std::find_if(contenders.begin(), contenders.end(),
-                   [](const Contender& contender) { return contender.label == default_method(); });
+                   [](const Contender& contender) { return contender.label == kDefaultMethod; });
   return found == contenders.end() ? contenders.front() : *found;
 }
 
@@ -154,7 +154,6 @@ ComparePlan make_compare_plan(const CompareSettings& settings) {
   check_range("bounces", settings.bounces, 1, 64);
   // References have half as many seeds as all else: two of them for each.
   check_range("seed", settings.seed, 0, (std::int64_t{1} << 30) - 1);
-  check_range("threads", settings.threads, 0, 1024);
   check_range("reference-spp", settings.reference_spp, 2, 2 * kMostSpp);
   EL_CHECK(settings.reference_spp % 2 == 0,
            "reference-spp {}: expected an even number, half for each of two references",

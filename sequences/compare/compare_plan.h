@@ -33,8 +33,6 @@ struct CompareSettings {
   bool ablate = false;
   std::string paper;  ///< not empty: rerun it; `size` and `frames` are then empty if not given
   std::string directory;
-  int threads = 0;
-  bool quiet = false, json = false;
 };
 
 /// One column of the comparison: a method of ours, perhaps without one of its parts, or a program.

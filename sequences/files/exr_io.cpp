@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "frame/float_traps.h"
+#include "frame/named.h"
 #include "frame/tiles.h"
 #include "sequences/files/atomic_file.h"
 #include "sequences/files/exr_layers.h"
@@ -204,11 +205,9 @@ void ExrReader::State::add_part(const OIIO::ImageSpec& spec) {
 std::vector<Channel> ExrReader::State::channels_of(std::string_view layer) const {
   const auto resolved = find_layer(layers, layer);
   if (!resolved) {
-    std::string known;
-    for (const std::string& name : layers) {
-      known += fmt::format("{}{}", known.empty() ? "" : ", ", name.empty() ? "color" : name);
-    }
-    fail(path, fmt::format("no layer '{}'; it has: {}", layer, known));
+    std::vector<std::string> names = layers;
+    std::replace(names.begin(), names.end(), std::string(), std::string("color"));
+    fail(path, fmt::format("no layer '{}'; it has: {}", layer, names_of(names)));
   }
   std::vector<Channel> chosen;
   for (std::size_t i = 0; i < found.size(); ++i) {

@@ -1,13 +1,13 @@
 #include "sequences/lab/paper.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
 
+#include "frame/named.h"
 #include "sequences/compare/compare_results.h"
 #include "sequences/files/frame_range.h"
 #include "sequences/files/version.h"
@@ -92,19 +92,9 @@ const std::vector<Paper>& papers() {
   return kPapers;
 }
 
-std::string paper_names() {
-  std::vector<std::string_view> names;
-  for (const Paper& paper : papers()) names.push_back(paper.name);
-  return fmt::format("{}", fmt::join(names, ", "));
-}
+std::string paper_names() { return names_of(papers()); }
 
-const Paper& find_paper(std::string_view name) {
-  for (const Paper& paper : papers()) {
-    if (paper.name == name) return paper;
-  }
-  throw std::invalid_argument(
-      fmt::format("--paper: unknown paper \"{}\", expected {}", name, paper_names()));
-}
+const Paper& find_paper(std::string_view name) { return find_named(papers(), name, "paper"); }
 
 Page paper_page(const Paper& paper, const PaperRun& run, const PaperReport& report) {
   const Machine machine = this_machine();

@@ -112,7 +112,7 @@ PyramidExample frame_example(const std::string& scene_name, int number, int radi
 }
 
 PyramidWeights train_octave(const TrainPyramidOptions& options, int radius,
-                            const PyramidWeights& start, const std::function<bool()>& go_on,
+                            const PyramidWeights& start, const std::function<void()>& step,
                             TrainedRadius& report) {
   const int side = radius <= kLargestSmallRadius ? kSmallSide : kLargeSide;
   std::vector<PyramidExample> examples;
@@ -126,12 +126,10 @@ PyramidWeights train_octave(const TrainPyramidOptions& options, int radius,
         example.loss(untrained_pyramid_weights(static_cast<float>(radius)), 1.0, unused).total() /
         static_cast<double>(examples.size());
   }
-  bool stopped = false;
   const TrainingResult result = train_pyramid(examples, start, options.training, [&](int, double) {
-    stopped = !go_on();
-    return !stopped;
+    step();
+    return true;
   });
-  if (stopped) throw std::runtime_error("training was interrupted: no table is written");
   report.trained_loss = result.last_loss;
   return result.weights;
 }
@@ -181,7 +179,7 @@ std::vector<NamedExample> make_pyramid_examples(const PyramidPictures& pictures,
 
 PyramidTable train_pyramid_table(const TrainPyramidOptions& options,
                                  const std::function<void(const TrainedRadius&)>& done,
-                                 const std::function<bool()>& go_on) {
+                                 const std::function<void()>& step) {
   options.validate();
   std::vector<PyramidWeights> octaves;
   for (int k = 0; k < kPyramidOctaves; ++k) {
@@ -189,7 +187,7 @@ PyramidTable train_pyramid_table(const TrainPyramidOptions& options,
     const PyramidWeights start =
         k == 0 ? untrained_pyramid_weights(1.0f) : start_for_twice_the_radius(octaves.back());
     TrainedRadius report;
-    octaves.push_back(train_octave(options, radius, start, go_on, report));
+    octaves.push_back(train_octave(options, radius, start, step, report));
     done(report);
   }
   return PyramidTable(std::move(octaves));

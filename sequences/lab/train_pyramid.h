@@ -52,10 +52,10 @@ struct NamedExample {
 [[nodiscard]] std::vector<NamedExample> make_pyramid_examples(const PyramidPictures& pictures,
                                                               int radius, int side);
 
-/// Trains one octave after the other, each from the one before. `done` hears of each radius;
-/// `go_on` is asked after each step, and training ends with std::runtime_error when it says no.
+/// Trains one octave after the other, each from the one before. `done` is called after each radius,
+/// `step` after each step of descent; both may throw to end the training.
 [[nodiscard]] PyramidTable train_pyramid_table(
     const TrainPyramidOptions& options, const std::function<void(const TrainedRadius&)>& done,
-    const std::function<bool()>& go_on);
+    const std::function<void()>& step);
 
 }  // namespace eigenlight

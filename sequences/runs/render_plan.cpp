@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <charconv>
 
+#include "frame/check.h"
+#include "frame/named.h"
 #include "sequences/files/frame_range.h"
 #include "sequences/files/split_list.h"
 #include "temporal/methods.h"
@@ -47,23 +49,14 @@ void check_range(std::string_view name, std::int64_t value, std::int64_t low, st
 }
 
 void check_method(const std::string& name) {
-  std::string known;
-  for (const Method& method : methods()) {
-    if (method.name == name) return;
-    known += fmt::format("{}, ", method.name);
-  }
-  EL_CHECK(name == kReferenceMethod, "unknown method '{}'; known: {}{}", name, known,
+  const bool known = name == kReferenceMethod ||
+                     std::any_of(methods().begin(), methods().end(),
+                                 [&](const Method& method) { return method.name == name; });
+  EL_CHECK(known, "unknown method '{}'; known: {}, {}", name, names_of(methods()),
            kReferenceMethod);
 }
 
 }  // namespace
-
-std::string default_method() {
-  static constexpr std::string_view kOurs = "eigenlight";
-  const bool present = std::any_of(methods().begin(), methods().end(),
-                                   [](const Method& method) { return method.name == kOurs; });
-  return std::string(present ? kOurs : methods().front().name);
-}
 
 Extent parse_size(std::string_view text) {
   Extent extent;
@@ -83,14 +76,13 @@ Extent parse_size(std::string_view text) {
 
 RenderPlan make_plan(const RenderSettings& settings) {
   RenderPlan plan;
-  plan.method = settings.method.empty() ? default_method() : settings.method;
+  plan.method = settings.method;
   check_method(plan.method);
   const bool is_reference = plan.method == kReferenceMethod;
   plan.denoiser = is_reference ? "noisy" : plan.method;
   plan.frames = parse_frame_range(settings.frames);
   check_range("bases", settings.bases, 1, 8);
   check_range("seed", settings.seed, 0, kSeeds - 1);
-  check_range("threads", settings.threads, 0, 1024);
   plan.bases = settings.bases;
   plan.without = split_list("without", settings.without);
   plan.perturbation = parse_perturbation(settings.perturb);

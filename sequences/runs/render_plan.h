@@ -12,6 +12,11 @@
 
 namespace eigenlight {
 
+inline constexpr std::string_view kDefaultMethod = "eigenlight";
+/// The method that renders references: many samples, no denoising, and seeds that no other run has.
+inline constexpr std::string_view kReferenceMethod = "reference";
+inline constexpr int kReferenceSpp = 512;
+
 /// As a user gives them.
 struct RenderSettings {
   std::string scene;
@@ -19,30 +24,24 @@ struct RenderSettings {
   std::string frames = "0-47";
   std::string size = "640x360";
   std::optional<int> spp;  ///< 3, or kReferenceSpp for `reference`
-  std::string method;      ///< empty: default_method()
-  std::string without;     ///< parts of the method to turn off, with commas; empty: none
+  std::string method{kDefaultMethod};
+  std::string without;  ///< comma-separated parts of the method to turn off; empty: none
   int bases = 3;
   std::int64_t seed = 0;
   int bounces = 3;
   std::string perturb = "none";
   std::string antialias = "none";
   std::string layers;  ///< empty: all
-  int threads = 0;     ///< 0: one per core
   bool environment = false;
-  bool resume = false, quiet = false, json = false;
+  bool resume = false;
 };
-
-/// The way to render what others are measured against: many samples, no denoising, and seeds that
-/// no other run has.
-inline constexpr std::string_view kReferenceMethod = "reference";
-inline constexpr int kReferenceSpp = 512;
 
 /// As a run needs them.
 struct RenderPlan {
   RenderOptions render;
   std::vector<int> frames;
   std::string method;    ///< as the user named it
-  std::string denoiser;  ///< what does it: `noisy` for `reference`
+  std::string denoiser;  ///< name of the denoiser: `noisy` for `reference`
   std::vector<std::string> without;
   int bases = 3;
   Perturbation perturbation = Perturbation::kNone;
@@ -53,9 +52,6 @@ struct RenderPlan {
 
 /// `640x360`. Throws std::invalid_argument on anything else, or sides beyond [1, kMaxSide].
 [[nodiscard]] Extent parse_size(std::string_view text);
-
-/// `eigenlight` where it is registered, else the first method.
-[[nodiscard]] std::string default_method();
 
 /// Throws std::invalid_argument naming the option, what was given and what was expected; also when
 /// frames of that size cannot fit the memory of the machine.

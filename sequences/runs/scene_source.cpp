@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "frame/named.h"
 #include "render/builtin/builtin_scenes.h"
 #include "render/loading/scene_file.h"
 
@@ -82,14 +83,10 @@ void add_lights(const Scene& scene, SceneHash& hash) {
 }
 
 [[noreturn]] void fail_unknown(const std::string& name) {
-  std::string known;
-  for (const BuiltinScene& scene : builtin_scenes()) {
-    known += fmt::format("{}{}", known.empty() ? "" : ", ", scene.name);
-  }
   throw std::invalid_argument(
       fmt::format("unknown scene '{}'; built-in: {}; or give a scene.json, .gltf, .glb or .obj "
                   "file",
-                  name, known));
+                  name, names_of(builtin_scenes())));
 }
 
 bool names_a_file(const std::filesystem::path& path) {

@@ -6,37 +6,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
-#include "sequences/cli/cli.h"
 #include "sequences/lab/paper_bauszat2011.h"
 #include "sequences/lab/paper_chen2012.h"
 #include "sequences/lab/paper_chiu2012.h"
 #include "sequences/lab/paper_scene.h"
 #include "temporal/methods.h"
-#include "tests/support/temp_dir.h"
 
 namespace eigenlight {
 namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
-
-struct Outcome {
-  int status = 0;
-  std::string err;
-};
-
-Outcome call(std::vector<std::string> words) {
-  words.insert(words.begin(), {"eigenlight", "compare"});
-  std::vector<const char*> args;
-  for (const std::string& word : words) args.push_back(word.c_str());
-  std::ostringstream out, err;
-  const int status = run_command_line(args, {out, err, false, ""});
-  return {status, err.str()};
-}
 
 PaperReport small_report() {
   PaperReport report;
@@ -72,25 +54,6 @@ TEST(Paper, ReportsHoldEveryFigure) {
               HasSubstr("| Table 1 | fast | 1 ms | 2 ms | held in part |"));
   EXPECT_THAT(to_html(paper_page(paper, run, small_report())),
               AllOf(HasSubstr("held in part"), HasSubstr("2 ms")));
-}
-
-TEST(Paper, OptionsThatDoNotFitAreNamed) {
-  const TempDir dir;
-  const std::filesystem::path out = dir / "out";
-  const auto fails_with = [&](std::vector<std::string> words, const std::string& what) {
-    words.insert(words.end(), {"-o", out.string()});
-    const Outcome outcome = call(words);
-    EXPECT_EQ(outcome.status, 2);
-    EXPECT_THAT(outcome.err, HasSubstr(what));
-  };
-  fails_with({}, "scenes or --paper");
-  fails_with({"--paper", "chen2013"}, "unknown paper \"chen2013\"");
-  fails_with({"--paper", "chen2012", "--frames", "0-3"}, "--frames 0-3");
-  fails_with({"--paper", "chen2012", "--frames", "9-0"}, "--frames 9-0");
-  fails_with({"--paper", "chen2012", "--size", "8"}, "8");
-  fails_with({"--paper", "chen2012", "--spp", "4"}, "--spp");
-  fails_with({"cornell", "--paper", "chen2012"}, "--paper");
-  EXPECT_FALSE(std::filesystem::exists(out));
 }
 
 // The first basis is of the steady light: both kinds of PCA have to find it.

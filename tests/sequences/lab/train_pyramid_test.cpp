@@ -2,46 +2,19 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <sstream>
 #include <string>
 #include <vector>
 
-#include "frame/tiles.h"
-#include "sequences/cli/cli.h"
-#include "sequences/files/exr_io.h"
 #include "sequences/lab/judge_pyramid.h"
-#include "spatial/training/training_images.h"
+#include "tests/support/painted_picture.h"
 #include "tests/support/temp_dir.h"
 
 namespace eigenlight {
 namespace {
 
-struct Outcome {
-  int status = 0;
-  std::string err;
-};
-
-Outcome call(const std::vector<std::string>& words) {
-  std::vector<const char*> args{"eigenlight", "train-pyramid"};
-  for (const std::string& word : words) args.push_back(word.c_str());
-  std::ostringstream out, err;
-  const int status = run_command_line(args, {out, err, false, ""});
-  set_thread_count(0);
-  return {status, err.str()};
-}
-
-void write_picture(const std::filesystem::path& path, Extent extent) {
-  const Planes<3> image = paint_training_image(extent, 5);
-  const std::vector<ExrChannel> channels{{"R", ExrType::kFloat, &image[0]},
-                                         {"G", ExrType::kFloat, &image[1]},
-                                         {"B", ExrType::kFloat, &image[2]}};
-  write_exr(path, channels, {});
-}
-
-TEST(TrainPyramid, LearnsFromPicturesFilesAndFrames) {
+TEST(TrainPyramid, ExamplesComeFromPaintedPicturesFilesAndFrames) {
   const TempDir dir;
-  write_picture(dir / "picture.exr", {40, 36});
+  write_painted_picture(dir / "picture.exr", {40, 36});
   PyramidPictures options;
   options.painted = 2;
   options.images = {(dir / "picture.exr").string()};
@@ -57,8 +30,7 @@ TEST(TrainPyramid, LearnsFromPicturesFilesAndFrames) {
   }
 }
 
-// Every third painted picture is noise around the clean picture that guides it.
-TEST(TrainPyramid, SomePaintedPicturesAreNoisy) {
+TEST(TrainPyramid, EveryThirdPaintedPictureIsNoisy) {
   PyramidPictures pictures;
   pictures.scenes.clear();
   pictures.painted = 6;
@@ -69,8 +41,8 @@ TEST(TrainPyramid, SomePaintedPicturesAreNoisy) {
                                              "painted 10", "painted 11", "painted 12, noisy"}));
 }
 
-// Of the committed table, on what it was not trained on.
-TEST(JudgePyramid, TheTrainedTableIsCloserToBruteForceOnEveryKindOfPicture) {
+// The committed table is judged on pictures that it was not trained on.
+TEST(JudgePyramid, TrainedTableIsCloserToBruteForceForEachKindOfPicture) {
   PyramidPictures pictures{.painted = 6, .seed = 1000, .scenes = {"cornell"}, .frame = 40};
   for (const int radius : {2, 8, 32}) {
     const std::vector<PyramidJudgement> kinds = judge_pyramid(pictures, radius, 64);
@@ -81,42 +53,6 @@ TEST(JudgePyramid, TheTrainedTableIsCloserToBruteForceOnEveryKindOfPicture) {
       EXPECT_GT(j.trained.psnr, j.untrained.psnr) << j.kind << ", radius " << radius;
     }
   }
-}
-
-TEST(JudgePyramid, RefusesBadOptions) {
-  const auto judge = [](std::vector<const char*> words) {
-    words.insert(words.begin(), {"eigenlight", "judge-pyramid", "--painted", "1", "--side", "16"});
-    std::ostringstream out, err;
-    const int status = run_command_line(words, {out, err, false, ""});
-    set_thread_count(0);
-    return status;
-  };
-  EXPECT_EQ(judge({"--radii", "0"}), 2);
-  EXPECT_EQ(judge({"--radii", "65"}), 2);
-  EXPECT_EQ(judge({"--scenes", "nowhere"}), 2);
-  EXPECT_EQ(judge({"--side", "4"}), 2);
-}
-
-TEST(TrainPyramid, NamesAFileThatIsMissingOrTooSmall) {
-  const TempDir dir;
-  const std::string table = (dir / "table.cpp").string();
-  const Outcome missing = call({"-o", table, "--painted", "0", "--images", "no/such.png"});
-  EXPECT_EQ(missing.status, 1);
-  EXPECT_NE(missing.err.find("no/such.png"), std::string::npos) << missing.err;
-  write_picture(dir / "small.exr", {40, 36});
-  const Outcome small =
-      call({"-o", table, "--painted", "0", "--images", (dir / "small.exr").string()});
-  EXPECT_EQ(small.status, 1);
-  EXPECT_NE(small.err.find("small.exr: 40x36 pixels, expected 128"), std::string::npos)
-      << small.err;
-  EXPECT_FALSE(std::filesystem::exists(table));
-}
-
-TEST(TrainPyramid, RefusesBadOptions) {
-  EXPECT_EQ(call({"--painted", "1"}).status, 2);
-  EXPECT_EQ(call({"-o", "x", "--painted", "65"}).status, 2);
-  EXPECT_EQ(call({"-o", "x", "--steps", "-1"}).status, 2);
-  EXPECT_EQ(call({"-o", "x", "--painted", "0", "--scenes", "nowhere"}).status, 2);
 }
 
 }  // namespace

@@ -1,15 +1,11 @@
-// Every quick case of `eigenlight stress`, and the command itself.
-#include <gmock/gmock.h>
+// The quick cases of `eigenlight stress`.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cctype>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <set>
-#include <sstream>
 
-#include "sequences/cli/stress_command.h"
 #include "sequences/files/atomic_file.h"
 #include "sequences/files/exr_io.h"
 #include "sequences/stress/stress_case.h"
@@ -17,8 +13,6 @@
 
 namespace eigenlight {
 namespace {
-
-using testing::HasSubstr;
 
 // Statistics over a thousand seeds take too long here; `eigenlight stress` has them.
 std::vector<StressCase> quick_cases() {
@@ -48,36 +42,7 @@ INSTANTIATE_TEST_SUITE_P(All, StressCaseTest, testing::ValuesIn(quick_cases()),
                            return name;
                          });
 
-struct Outcome {
-  int status;
-  std::string out, err;
-};
-
-Outcome run(StressSettings settings) {
-  std::ostringstream out, err;
-  const int status = stress_command(settings, {out, err, false, ""});
-  return {status, out.str(), err.str()};
-}
-
-TEST(StressCommand, PrintsATableOrJson) {
-  const Outcome table = run({.only = "algebra.black"});
-  EXPECT_EQ(table.status, 0);
-  EXPECT_THAT(table.out, HasSubstr("algebra.black"));
-  EXPECT_THAT(table.out, HasSubstr("1 of 1 cases within their bounds"));
-  const auto json = nlohmann::json::parse(run({.json = true, .only = "history"}).out);
-  ASSERT_EQ(json["cases"].size(), history_cases().size());
-  for (const char* field : {"name", "frames", "figure", "bound", "pass"}) {
-    EXPECT_TRUE(json["cases"][0].contains(field)) << field;
-  }
-}
-
-TEST(StressCommand, NamesTheCasesWhenThereIsNoneOfAName) {
-  EXPECT_THAT([] { (void)run({.only = "no.such"}); },
-              testing::ThrowsMessage<std::invalid_argument>(
-                  testing::AllOf(HasSubstr("'no.such'"), HasSubstr("values.signal"))));
-}
-
-TEST(StressCommand, CaseNamesAreThemeAndCaseAndUnique) {
+TEST(StressCases, NamesAreUniqueAndOfFormThemeDotCase) {
   std::set<std::string_view> names;
   for (const StressCase& c : stress_cases()) {
     EXPECT_EQ(std::count(c.name.begin(), c.name.end(), '.'), 1) << c.name;
@@ -86,8 +51,8 @@ TEST(StressCommand, CaseNamesAreThemeAndCaseAndUnique) {
   }
 }
 
-// What a broken case leaves, with a figure that grows to frame 5 of the second run.
-TEST(StressRecording, KeepsTheFrameBeforeTheFrameAndTheHistory) {
+// A failing case whose figure grows to frame 5 of the second run.
+TEST(StressRecording, KeepsTheWorstFrameTheOneBeforeAndTheHistory) {
   const TempDir dir;
   const auto play = [](Lab& lab) {
     for (int run = 0; run < 2; ++run) {
@@ -112,7 +77,7 @@ TEST(StressRecording, KeepsTheFrameBeforeTheFrameAndTheHistory) {
   EXPECT_FALSE(read_whole_file(dir / "state.bin").empty());
 }
 
-TEST(Lab, NanIsWorseThanAll) {
+TEST(Lab, NanIsTheWorstFigure) {
   Lab lab(0);
   lab.note(1.0);
   lab.note(std::numeric_limits<double>::quiet_NaN(), "nan");

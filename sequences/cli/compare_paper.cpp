@@ -1,12 +1,10 @@
-#include "sequences/cli/paper_command.h"
+#include "sequences/cli/compare_paper.h"
 
 #include <fmt/format.h>
 
 #include <filesystem>
 #include <stdexcept>
 
-#include "frame/tiles.h"
-#include "sequences/cli/interrupt.h"
 #include "sequences/files/atomic_file.h"
 #include "sequences/files/frame_range.h"
 #include "sequences/lab/paper.h"
@@ -17,12 +15,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A second.
-constexpr const char* kFrames = "0-23";
-// Figures are means over the last frames, and need some before them.
+constexpr const char* kFrames = "0-23";  // one second
+// Results are means over the last frames, which need frames before them.
 constexpr std::size_t kLeastFrames = 8;
-
-struct Interrupted {};
 
 PaperRun make_run(const Paper& paper, const CompareSettings& settings) {
   PaperRun run;
@@ -33,7 +28,7 @@ PaperRun make_run(const Paper& paper, const CompareSettings& settings) {
       run.frames.back() - run.frames.front() + 1 == static_cast<int>(run.frames.size());
   if (!is_run || run.frames.size() < kLeastFrames) {
     throw std::invalid_argument(
-        fmt::format("--frames {}: expected {} or more frames, ascending and without a gap", frames,
+        fmt::format("frames '{}': expected {} or more frames, ascending and without a gap", frames,
                     kLeastFrames));
   }
   return run;
@@ -49,35 +44,21 @@ fs::path make_directory(const std::string& name) {
 
 }  // namespace
 
-int paper_command(const CompareSettings& settings, const Console& console) {
+int compare_paper(const CompareSettings& settings, const Job& job) {
   const Paper& paper = find_paper(settings.paper);
   PaperRun run = make_run(paper, settings);
   const fs::path directory = make_directory(settings.directory);
-  const InterruptGuard interrupt(settings.quiet ? InterruptGuard::Notice::kSilent
-                                                : InterruptGuard::Notice::kStderr);
-  set_thread_count(settings.threads);
   run.step = [&](const std::string& what) {
-    if (interrupt.interrupted()) throw Interrupted();
-    if (!settings.quiet) console.err << fmt::format("{}: {}\n", paper.name, what) << std::flush;
+    job.stop_if_interrupted("stopped; nothing was written");
+    job.say(fmt::format("{}: {}", paper.name, what));
   };
-  PaperReport report;
-  try {
-    report = paper.rerun(run);
-  } catch (const Interrupted&) {
-    if (!settings.quiet) console.err << "stopped; nothing was written\n" << std::flush;
-    return kInterruptedStatus;
-  }
+  const PaperReport report = paper.rerun(run);
   const std::string json = paper_json(paper, run, report);
+  const fs::path page = directory / "index.html";
   write_file_atomically(directory / "results.json", json);
-  write_file_atomically(directory / "index.html", to_html(paper_page(paper, run, report)));
-  if (settings.json) {
-    console.out << json << std::flush;
-  } else if (!settings.quiet) {
-    console.out << to_markdown(paper, report) << '\n'
-                << (directory / "index.html").string() << '\n'
-                << std::flush;
-  }
-  return 0;
+  write_file_atomically(page, to_html(paper_page(paper, run, report)));
+  job.print_results(json, fmt::format("{}\n{}\n", to_markdown(paper, report), page.string()));
+  return kSuccess;
 }
 
 }  // namespace eigenlight
