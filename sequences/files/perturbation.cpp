@@ -29,8 +29,7 @@ Perturbation parse_perturbation(std::string_view text) {
                                   [name](const auto& entry) { return entry.first == name; });
   const bool has_frame = name.size() < text.size();
   EL_CHECK(found != kNames.end() && (!has_frame || found->second == Perturbation::kStep),
-           "unknown perturbation \"{}\", expected none, lights, objects, all, step or step:FRAME",
-           text);
+           "unknown perturbation '{}'; known: none, lights, objects, all, step, step:FRAME", text);
   Perturbation perturbation(found->second);
   if (!has_frame) return perturbation;
   const std::string_view digits = text.substr(name.size() + 1);
@@ -38,8 +37,7 @@ Perturbation parse_perturbation(std::string_view text) {
   const auto [stop, error] = std::from_chars(digits.data(), end, perturbation.step_frame);
   EL_CHECK(error == std::errc{} && stop == end && perturbation.step_frame >= 1 &&
                perturbation.step_frame <= kLastStepFrame,
-           "perturbation \"{}\": expected step:FRAME with a frame of 1 to {}", text,
-           kLastStepFrame);
+           "perturbation '{}': expected step:FRAME with a frame of 1 to {}", text, kLastStepFrame);
   return perturbation;
 }
 

@@ -1,5 +1,4 @@
-// The command line in this process: what it refuses, what it prints, and that bits depend on
-// nothing but what determines a run.
+// The command line in this process: its output, its errors, and that equal runs give equal bits.
 #include "sequences/cli/cli.h"
 
 #include <gmock/gmock.h>
@@ -40,7 +39,7 @@ class CliTest : public testing::Test {
   TempDir dir_;
 };
 
-TEST_F(CliTest, ARunLeavesFramesLogsAndPage) {
+TEST_F(CliTest, RenderWritesFramesLogsAndPage) {
   const Outcome run = render("a", {"--frames", "3-4", "--method", "noisy"});
   EXPECT_EQ(run.status, 0);
   EXPECT_THAT(run.out, AllOf(HasSubstr("2 frames in"), HasSubstr("Mrays/s")));
@@ -58,7 +57,7 @@ TEST_F(CliTest, ARunLeavesFramesLogsAndPage) {
   EXPECT_EQ(std::get<std::string>(*reader.attribute("eigenlight.scene")), "cornell");
 }
 
-TEST_F(CliTest, OfAnOptionGivenTwiceTheLastCounts) {
+TEST_F(CliTest, LastValueOfARepeatedOptionWins) {
   EXPECT_EQ(
       render("a", {"-q", "--frames", "0-3", "--spp", "3", "--frames", "7", "--spp", "1"}).status,
       0);
@@ -67,7 +66,7 @@ TEST_F(CliTest, OfAnOptionGivenTwiceTheLastCounts) {
   EXPECT_EQ(nlohmann::json::parse(bytes("a/run.json"))["spp"], 1);
 }
 
-TEST_F(CliTest, NegativeFramesAreRenderedFoundAgainAndMeasured) {
+TEST_F(CliTest, NegativeFramesCanBeRenderedResumedAndEvaluated) {
   ASSERT_EQ(render("a", {"-q", "--frames", "-2-1", "--perturb", "all"}).status, 0);
   ASSERT_EQ(render("b", {"-q", "--frames", "-2-1", "--perturb", "all", "--seed", "1"}).status, 0);
   for (const char* name :
@@ -83,7 +82,7 @@ TEST_F(CliTest, NegativeFramesAreRenderedFoundAgainAndMeasured) {
   EXPECT_THAT(measured.out, HasSubstr("4 frames"));
 }
 
-TEST_F(CliTest, BitsDependOnNeitherThreadsNorOtherFrames) {
+TEST_F(CliTest, FramesAreEqualForAnyThreadsAndAnyOtherFrames) {
   EXPECT_EQ(render("one", {"--frames", "0-2", "--threads", "1"}).status, 0);
   EXPECT_EQ(render("two", {"--frames", "0-2", "--threads", "2"}).status, 0);
   for (const char* name : {"/frame.0000.exr", "/frame.0001.exr", "/frame.0002.exr"}) {
@@ -99,7 +98,7 @@ TEST_F(CliTest, BitsDependOnNeitherThreadsNorOtherFrames) {
   }
 }
 
-TEST_F(CliTest, SeedsAndReferencesAreIndependent) {
+TEST_F(CliTest, OtherSeedsAndReferencesShareNoSamples) {
   const std::vector<std::string> common{"--frames", "0", "--method"};
   const auto with = [&](std::vector<std::string> more) {
     more.insert(more.begin(), common.begin(), common.end());
@@ -128,7 +127,7 @@ TEST_F(CliTest, SeedsAndReferencesAreIndependent) {
   }
 }
 
-TEST_F(CliTest, QuietPrintsNothingAndJsonOneObject) {
+TEST_F(CliTest, QuietPrintsNothingAndJsonPrintsOneObject) {
   const Outcome quiet = render("a", {"--frames", "0", "--method", "noisy", "--quiet"});
   EXPECT_EQ(quiet.status, 0);
   EXPECT_EQ(quiet.out + quiet.err, "");
@@ -140,7 +139,7 @@ TEST_F(CliTest, QuietPrintsNothingAndJsonOneObject) {
   EXPECT_TRUE(summary["mean_ms"]["source"].contains("cpu"));
 }
 
-TEST_F(CliTest, ListsAndHelp) {
+TEST_F(CliTest, PrintsListsVersionAndHelp) {
   EXPECT_THAT(call({"scenes"}).out, HasSubstr("cornell "));
   EXPECT_THAT(call({"methods"}).out, AllOf(HasSubstr("noisy "), HasSubstr("reference ")));
   EXPECT_THAT(call({"--version"}).out, StartsWith("eigenlight "));
@@ -156,7 +155,7 @@ struct Mistake {
   const char* message;
 };
 
-TEST_F(CliTest, EachMistakeIsOneClearLine) {
+TEST_F(CliTest, EachMistakeIsOneLineAndMakesNothing) {
   const Mistake mistakes[] = {
       {{"--method", "magic"}, "unknown method 'magic'; known: "},
       {{"--size", "640"}, "size '640': expected WIDTHxHEIGHT"},
@@ -164,18 +163,21 @@ TEST_F(CliTest, EachMistakeIsOneClearLine) {
       {{"--size", "10x10x"}, "size '10x10x': expected WIDTHxHEIGHT"},
       {{"--size", "65536x65536"}, "size 65536x65536: needs about"},
       {{"--spp", "0"}, "spp 0: expected 1 to 65536"},
-      {{"--spp", "many"}, "--spp = many"},
+      {{"--spp", "many"}, "Could not convert: --spp = many; see eigenlight --help"},
       {{"--bases", "9"}, "bases 9: expected 1 to 8"},
       {{"--bounces", "0"}, "bounces 0: expected 1 to 64"},
       {{"--seed", "-1"}, "seed -1: expected 0 to 2147483647"},
-      {{"--threads", "-2"}, "threads -2: expected 0 to 1024"},
+      {{"--threads", "-2"}, "threads -2: expected 0 (one per core) to 1024"},
       {{"--frames", "1-q"}, "frames '1-q': expected 7, 1-10"},
       {{"--layers", "color,depth"}, "unknown layer 'depth'; known: color, "},
-      {{"--perturb", "camera"}, "camera"},
+      {{"--perturb", "camera"},
+       "unknown perturbation 'camera'; known: none, lights, objects, all, step, step:FRAME"},
+      {{"--perturb", "step:0"}, "perturbation 'step:0': expected step:FRAME with a frame of 1 to"},
       {{"--aa", "fxaa"},
        "unknown aa 'fxaa'; known: none, lookup, sraa, sraa-geometry, supersample:N"},
       {{"--aa", "supersample:1"}, "aa 'supersample:1': expected supersample:N with N from 2"},
-      {{"--frobnicate"}, "--frobnicate"},
+      {{"--frobnicate"}, "not expected: --frobnicate; see eigenlight --help"},
+      {{"--without", "magic"}, "method 'eigenlight' has no part 'magic' to turn off; it has: "},
   };
   for (const Mistake& mistake : mistakes) {
     std::vector<std::string> words{"render", "cornell", "-o", dir_ / "never"};
@@ -192,7 +194,7 @@ TEST_F(CliTest, EachMistakeIsOneClearLine) {
   EXPECT_EQ(call({"frobnicate"}).status, 2);
 }
 
-TEST_F(CliTest, ScenesThatAreNone) {
+TEST_F(CliTest, UnknownSceneIsAnError) {
   const Outcome unknown = call({"render", "nowhere", "-o", dir_ / "never"});
   EXPECT_EQ(unknown.status, 2);
   EXPECT_THAT(unknown.err, HasSubstr("unknown scene 'nowhere'; built-in: cornell, "));
@@ -209,12 +211,27 @@ TEST_F(CliTest, ScenesThatAreNone) {
   EXPECT_FALSE(std::filesystem::exists(dir_ / "never"));
 }
 
-TEST_F(CliTest, ADirectoryThatCannotBeWritten) {
+// As with `> /dev/full`: a script must not take lost results for success.
+TEST(Cli, UnwritableStandardOutputIsAnError) {
+  const std::vector<std::vector<const char*>> commands{
+      {"eigenlight", "scenes"},
+      {"eigenlight", "methods", "--parts"},
+      {"eigenlight", "--help"},
+      {"eigenlight", "stress", "--case", "algebra.black"}};
+  for (const std::vector<const char*>& words : commands) {
+    std::ostream full(nullptr);  // every write fails
+    std::ostringstream err;
+    EXPECT_EQ(run_command_line(words, {full, err}), 1) << words[1];
+    EXPECT_EQ(err.str(), "eigenlight: cannot write to standard output\n") << words[1];
+  }
+}
+
+TEST_F(CliTest, UnwritableDirectoryIsAnError) {
   std::ofstream(dir_ / "file") << "x";
   const Outcome outcome = render("file", {"--frames", "0"});
   EXPECT_EQ(outcome.status, 1);
   EXPECT_THAT(outcome.err, HasSubstr("file: cannot make the directory"));
-  // Where a frame should go there is something that no file can replace.
+  // A directory stands where the frame should go; no file can replace it.
   std::filesystem::create_directories(dir_ / "a/frame.0000.exr");
   const Outcome blocked = render("a", {"--frames", "0", "--quiet"});
   EXPECT_EQ(blocked.status, 1);
@@ -238,9 +255,8 @@ TEST_F(CliTest, ResumingAFinishedRunRendersNothing) {
   EXPECT_THAT(other.err, HasSubstr("state.bin: of another run: spp is 3 there, 5 here"));
 }
 
-// Only the picture is antialiased: all other layers are those of the guide rays, and the run says
-// what it did.
-TEST_F(CliTest, AntialiasingChangesTheColorAlone) {
+// All layers but the color are those of the guide rays, and run and files name the antialiasing.
+TEST_F(CliTest, AntialiasingChangesOnlyTheColor) {
   EXPECT_EQ(render("plain", {"--frames", "0"}).status, 0);
   const ExrReader plain(dir_ / "plain/frame.0000.exr");
   for (const char* aa : {"lookup", "sraa", "supersample:2"}) {
@@ -258,7 +274,7 @@ TEST_F(CliTest, AntialiasingChangesTheColorAlone) {
   EXPECT_THAT(other.err, HasSubstr("of another run: antialias is sraa there, lookup here"));
 }
 
-TEST_F(CliTest, DirectLightIsLeftOutWhereNoLayerShowsIt) {
+TEST_F(CliTest, DirectLightIsNotRenderedUnlessALayerShowsIt) {
   EXPECT_EQ(render("all", {"--frames", "0-1"}).status, 0);
   EXPECT_EQ(render("some", {"--frames", "0-1", "--layers", "indirect,noisy"}).status, 0);
   const auto rays = [&](const std::string& run) {
@@ -270,13 +286,6 @@ TEST_F(CliTest, DirectLightIsLeftOutWhereNoLayerShowsIt) {
   for (const char* layer : {"indirect", "noisy"}) {
     EXPECT_TRUE(planes_equal(some.read_planes<3>(layer), all.read_planes<3>(layer))) << layer;
   }
-}
-
-TEST(QuoteForShell, QuotesWhatAShellWouldSplit) {
-  EXPECT_EQ(quote_for_shell("out/a-1.exr"), "out/a-1.exr");
-  EXPECT_EQ(quote_for_shell("my scene"), "'my scene'");
-  EXPECT_EQ(quote_for_shell("it's"), "'it'\\''s'");
-  EXPECT_EQ(quote_for_shell(""), "''");
 }
 
 }  // namespace

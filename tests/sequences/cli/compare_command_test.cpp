@@ -59,7 +59,7 @@ class CompareCommand : public testing::Test {
   TempDir dir_;
 };
 
-TEST_F(CompareCommand, LeavesResultsTableAndPage) {
+TEST_F(CompareCommand, WritesResultsTableAndPage) {
   const Outcome run = compare("a", {"--methods", "eigenlight,noisy", "--spp", "1,2"});
   ASSERT_EQ(run.status, 0) << run.err;
   EXPECT_THAT(run.err,
@@ -96,7 +96,7 @@ TEST_F(CompareCommand, LeavesResultsTableAndPage) {
   EXPECT_FALSE(std::filesystem::exists(dir_ / "a/scratch"));
 }
 
-// What is compared is what `render` makes, and is measured as `evaluate` measures it.
+// Compared frames equal those of `render`, and figures equal those of `evaluate`.
 TEST_F(CompareCommand, AgreesWithRenderAndEvaluate) {
   ASSERT_EQ(compare("a", {"--methods", "eigenlight,chen2012,meyer2006", "--spp", "3"}).status, 0);
   for (const std::string method : {"eigenlight", "chen2012", "meyer2006"}) {
@@ -121,7 +121,7 @@ TEST_F(CompareCommand, AgreesWithRenderAndEvaluate) {
   }
 }
 
-TEST_F(CompareCommand, GoesOnWhereItWas) {
+TEST_F(CompareCommand, SecondRunMeasuresOnlyMissingResults) {
   const std::vector<std::string> options{"--methods", "mean,noisy", "--spp", "1"};
   ASSERT_EQ(compare("a", options).status, 0);
   const std::string csv = read_whole_file(dir_ / "a/results.csv");
@@ -142,8 +142,7 @@ TEST_F(CompareCommand, GoesOnWhereItWas) {
               HasSubstr("reference 1 of 2, 8 spp, 2 frames"));
 }
 
-// A program that copies its input is the method `noisy`.
-TEST_F(CompareCommand, MeasuresPrograms) {
+TEST_F(CompareCommand, ExternalCopyEqualsTheNoisyMethod) {
   const Outcome run =
       compare("a", {"--methods", "noisy", "--spp", "2", "--external", "copy=cp {color} {output}",
                     "--external", "timed=cp {color} {output}; echo took 7.5 ms", "--external-time",
@@ -159,7 +158,7 @@ TEST_F(CompareCommand, MeasuresPrograms) {
   EXPECT_EQ(found["settings"]["contenders"][1]["command"], "cp {color} {output}");
 }
 
-TEST_F(CompareCommand, FailingProgramsAreOneLine) {
+TEST_F(CompareCommand, FailingExternalProgramIsOneLine) {
   const std::pair<const char*, const char*> mistakes[] = {
       {"x=echo no weights >&2; exit 3; : {color} {output}",
        "external 'x': exit status 3: no weights"},
@@ -177,7 +176,7 @@ TEST_F(CompareCommand, FailingProgramsAreOneLine) {
   }
 }
 
-TEST_F(CompareCommand, SeveralPerturbationsAreSeveralScenes) {
+TEST_F(CompareCommand, EachPerturbationIsASceneOfItsOwn) {
   const Outcome run =
       compare("a", {"--methods", "noisy", "--spp", "1", "--perturb", "none,lights", "--json"});
   ASSERT_EQ(run.status, 0) << run.err;
@@ -195,7 +194,7 @@ TEST_F(CompareCommand, QuietPrintsNothing) {
   EXPECT_EQ(run.out + run.err, "");
 }
 
-TEST_F(CompareCommand, EachMistakeIsOneClearLine) {
+TEST_F(CompareCommand, EachMistakeIsOneLineAndMakesNothing) {
   const std::pair<std::vector<std::string>, const char*> mistakes[] = {
       {{"--methods", "magic"}, "unknown method 'magic'; known: eigenlight, "},
       {{"--methods", "mean,,noisy"}, "methods 'mean,,noisy': expected names with one comma"},
@@ -207,7 +206,7 @@ TEST_F(CompareCommand, EachMistakeIsOneClearLine) {
       {{"--size", "48"}, "size '48': expected WIDTHxHEIGHT"},
       {{"--reference-spp", "7"}, "reference-spp 7: expected an even number"},
       {{"--equal-time", "0"}, "equal-time 0: expected milliseconds above 0"},
-      {{"--perturb", "camera"}, "camera"},
+      {{"--perturb", "camera"}, "unknown perturbation 'camera'; known: none, "},
       {{"--seed", "-1"}, "seed -1: expected 0 to 1073741823"},
       {{"--external", "x=cp {color}"}, "external 'x': its command has no {output}"},
       {{"--external", "mean=cp {color} {output}"}, "external 'mean': a second method"},

@@ -53,7 +53,7 @@ class CompareInterrupt : public testing::Test {
     }
     return false;
   }
-  // Interrupts once a file is there, goes on, and compares with a run that never stopped.
+  // Interrupts when a file appears, goes on, and compares with an uninterrupted run.
   void interrupt_at(const std::string& where, const std::string& ending) {
     Process interrupted(command("parts"));
     wait_for_file(dir_ / where, ending);
@@ -79,11 +79,13 @@ class CompareInterrupt : public testing::Test {
   TempDir dir_;
 };
 
-TEST_F(CompareInterrupt, WhileItRendersReferences) {
+TEST_F(CompareInterrupt, GoesOnAfterAnInterruptInReferences) {
   interrupt_at("parts-references", "a/frame.0002.exr");
 }
 
-TEST_F(CompareInterrupt, WhileItMeasures) { interrupt_at("parts", "noisy/frame.0002.exr"); }
+TEST_F(CompareInterrupt, GoesOnAfterAnInterruptInMeasuring) {
+  interrupt_at("parts", "noisy/frame.0002.exr");
+}
 
 }  // namespace
 }  // namespace eigenlight

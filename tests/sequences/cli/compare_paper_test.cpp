@@ -35,8 +35,8 @@ TEST(ComparePaper, UnfitOptionsAreNamed) {
   expect_error(paper({"--frames", "0-3"}), "frames '0-3': expected 8 or more frames, ascending");
   expect_error(paper({"--frames", "9-0"}), "frames '9-0': expected 8 or more frames, ascending");
   expect_error(paper({"--size", "8"}), "size '8': expected WIDTHxHEIGHT");
-  expect_error(paper({"--spp", "4"}), "--paper excludes --spp");
-  expect_error(paper({"cornell"}), "--paper excludes scenes");
+  expect_error(paper({"--spp", "4"}), "--spp excludes --paper");
+  expect_error(paper({"cornell"}), "scenes excludes --paper");
   EXPECT_FALSE(std::filesystem::exists(out));
 }
 

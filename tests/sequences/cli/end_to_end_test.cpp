@@ -1,4 +1,4 @@
-// The built program as a process: interrupts, and runs that are taken up again.
+// The built program as a process: interrupted and resumed runs.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ namespace {
 using testing::HasSubstr;
 using namespace std::chrono_literals;
 
-// Samples that make a frame last long enough to be interrupted, and no longer.
+// Enough samples that a frame can be interrupted.
 constexpr const char* kSpp = "8";
 constexpr const char* kFrames = "0-15";
 constexpr int kLast = 15;
@@ -59,13 +59,13 @@ class EndToEnd : public testing::Test {
   TempDir dir_;
 };
 
-// A method without history, and one whose history must come back.
+// A method without history, and one whose history must be restored.
 class EndToEndOf : public EndToEnd, public testing::WithParamInterface<const char*> {
  protected:
   void SetUp() override { method_ = GetParam(); }
 };
 
-TEST_P(EndToEndOf, AnInterruptedRunGoesOnWithTheSameBits) {
+TEST_P(EndToEndOf, ResumedRunEqualsAnUninterruptedOne) {
   Process whole(command("whole"));
   ASSERT_EQ(whole.wait(), 0) << whole.err();
 
@@ -85,7 +85,7 @@ TEST_P(EndToEndOf, AnInterruptedRunGoesOnWithTheSameBits) {
   EXPECT_EQ(std::count(log.begin(), log.end(), '\n'), kLast + 1);
 }
 
-TEST_F(EndToEnd, AnAntialiasedRunGoesOnWithTheSameBits) {
+TEST_F(EndToEnd, ResumedAntialiasedRunEqualsAnUninterruptedOne) {
   const auto with_aa = [&](const std::string& name) {
     std::vector<std::string> words = command(name);
     words.insert(words.end(), {"--aa", "sraa"});
@@ -102,7 +102,7 @@ TEST_F(EndToEnd, AnAntialiasedRunGoesOnWithTheSameBits) {
   expect_same_frames("whole", "parts");
 }
 
-TEST_F(EndToEnd, AKilledRunGoesOnToo) {
+TEST_F(EndToEnd, KilledRunCanBeResumed) {
   Process whole(command("whole"));
   ASSERT_EQ(whole.wait(), 0) << whole.err();
   Process killed(command("parts"));
@@ -114,7 +114,7 @@ TEST_F(EndToEnd, AKilledRunGoesOnToo) {
   expect_same_frames("whole", "parts");
 }
 
-TEST_F(EndToEnd, TheSecondInterruptEndsAtOnce) {
+TEST_F(EndToEnd, SecondInterruptEndsTheProgramAtOnce) {
   std::vector<std::string> words = command("slow");
   for (std::string& word : words) {
     if (word == kSpp) word = "60000";
@@ -134,7 +134,7 @@ TEST_F(EndToEnd, TheSecondInterruptEndsAtOnce) {
   EXPECT_EQ(temporary_files("slow"), 0u);
 }
 
-TEST_F(EndToEnd, ADamagedCheckpointIsRefused) {
+TEST_F(EndToEnd, DamagedCheckpointIsAnError) {
   std::vector<std::string> words = command("a");
   for (std::string& word : words) {
     if (word == kFrames) word = "0";

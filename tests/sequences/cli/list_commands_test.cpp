@@ -24,14 +24,14 @@ std::vector<std::string> lines(void (*command)(std::ostream&)) {
   return found;
 }
 
-/// Where the text after `name` begins, or npos where no space parts them.
+/// Column of the text after `name`; npos if no space separates them.
 std::size_t text_column(const std::string& line, std::string_view indent, std::string_view name) {
   const std::size_t end = indent.size() + name.size();
   if (line.compare(0, end, std::string(indent).append(name)) != 0) return std::string::npos;
   return line[end] == ' ' ? line.find_first_not_of(' ', end) : std::string::npos;
 }
 
-TEST(ListMethods, NamesAndTextsStandApartInTwoColumns) {
+TEST(ListMethods, NamesAndTextsAreAlignedInTwoColumns) {
   const std::vector<std::string> found = lines(list_methods);
   ASSERT_EQ(found.size(), methods().size() + 1);  // and the reference
   std::vector<std::size_t> columns;
@@ -44,7 +44,7 @@ TEST(ListMethods, NamesAndTextsStandApartInTwoColumns) {
   EXPECT_THAT(columns, Each(columns.front()));
 }
 
-TEST(ListParts, NamesAndTextsStandApartBelowTheirMethod) {
+TEST(ListParts, PartsFollowTheirMethodInTwoColumns) {
   const std::vector<std::string> found = lines(list_parts);
   const Method& method = methods().front();
   ASSERT_FALSE(method.parts.empty());
@@ -58,7 +58,7 @@ TEST(ListParts, NamesAndTextsStandApartBelowTheirMethod) {
   }
 }
 
-TEST(ListScenes, OneLineAScene) {
+TEST(ListScenes, PrintsOneLinePerScene) {
   const std::vector<std::string> found = lines(list_scenes);
   ASSERT_EQ(found.size(), builtin_scenes().size());
   for (std::size_t i = 0; i < found.size(); ++i) {

@@ -12,7 +12,7 @@ namespace {
 using testing::HasSubstr;
 using testing::MatchesRegex;
 
-TEST(Progress, DurationsReadAsPeopleSayThem) {
+TEST(Progress, DurationsArePrintedInTwoUnits) {
   EXPECT_EQ(format_duration(0.4), "0s");
   EXPECT_EQ(format_duration(59.0), "59s");
   EXPECT_EQ(format_duration(185.0), "3m05s");
@@ -22,7 +22,7 @@ TEST(Progress, DurationsReadAsPeopleSayThem) {
   EXPECT_EQ(format_duration(std::numeric_limits<double>::infinity()), "?");
 }
 
-TEST(Progress, OneLineAFrameInAPipe) {
+TEST(Progress, PipeGetsOneLinePerFrame) {
   std::ostringstream out;
   {
     Progress progress(out, Progress::Style::kLines, 2, 4);
@@ -32,7 +32,7 @@ TEST(Progress, OneLineAFrameInAPipe) {
   EXPECT_THAT(out.str(), MatchesRegex("frame 12  3/4  [^\n]*left\nframe 13  4/4  [^\n]*0s left\n"));
 }
 
-TEST(Progress, OneLineInPlaceOnATerminal) {
+TEST(Progress, TerminalLineIsRedrawnInPlace) {
   std::ostringstream out;
   {
     Progress progress(out, Progress::Style::kBar, 0, 2);
@@ -46,7 +46,7 @@ TEST(Progress, OneLineInPlaceOnATerminal) {
   EXPECT_EQ(text.back(), '\n');
 }
 
-TEST(Progress, NothingWhenQuiet) {
+TEST(Progress, QuietStylePrintsNothing) {
   std::ostringstream out;
   {
     Progress progress(out, Progress::Style::kNone, 0, 2);
