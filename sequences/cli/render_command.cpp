@@ -9,7 +9,7 @@
 
 #include "sequences/cli/job.h"
 #include "sequences/files/version.h"
-#include "sequences/pages/report.h"
+#include "sequences/pages/run_page.h"
 #include "sequences/runs/render_plan.h"
 #include "sequences/runs/run_directory.h"
 #include "sequences/runs/run_log.h"
@@ -169,7 +169,7 @@ int RenderRun::stopped() const {
 }
 
 int RenderRun::finished() const {
-  write_report(directory_->path());
+  write_run_page(directory_->path());
   job_.print_results(totals_.to_json(directory_->path()), totals_.to_text(directory_->path()));
   return kSuccess;
 }

@@ -22,7 +22,7 @@ std::optional<double> figure(const Cell& cell, PixelSet set, Metric metric) {
 
 PagePlot error_against_time(const ComparePlan& plan, const CaseResults& results) {
   PagePlot plot{"Error against time",
-                "rings: no other point is both faster and better",
+                "A ring marks a point if no other point is both faster and better.",
                 {"CPU time of rendering and denoising, ms a frame", true},
                 {"relMSE", true},
                 {}};
@@ -31,7 +31,7 @@ PagePlot error_against_time(const ComparePlan& plan, const CaseResults& results)
     PlotSeries series{contender.label, {}};
     for (const Cell* cell : results.curve(contender.label)) {
       const auto relmse = figure(*cell, PixelSet::kSurface, Metric::kRelmse);
-      // What has no place in log-log cannot stand on the front either.
+      // The axes are logarithmic: other points are not drawn, so they cannot be on the front.
       if (!relmse || *relmse <= 0.0) continue;
       all.push_back({cell->total_ms(), *relmse});
       series.points.push_back({cell->total_ms(), *relmse, fmt::format("{} spp", cell->spp)});
@@ -53,7 +53,7 @@ PagePlot over_frames(const ComparePlan& plan, const CaseResults& results, Metric
                 {"frame"},
                 {is_relmse ? "relMSE" : "mean squared change of error", true},
                 {}};
-  plot.is_over_frames = true;
+  plot.frames = plan.measured;
   for (const Contender& contender : plan.contenders) {
     PlotSeries series{contender.label, {}};
     const Cell* cell = results.find(contender.label, plan.shown_spp());
@@ -66,30 +66,33 @@ PagePlot over_frames(const ComparePlan& plan, const CaseResults& results, Metric
   return plot;
 }
 
-PageTable figures_table(const ComparePlan& plan, const CaseResults& results) {
+PageTable empty_figures_table(const ComparePlan& plan, double equal_ms) {
   using Best = TableColumn::Best;
+  return {fmt::format("{} spp, means over frames {}", plan.shown_spp(),
+                      format_frame_range(plan.measured)),
+          fmt::format("The best value of a column is bold. Young pixels have fewer than {} frames "
+                      "of history. Times are CPU times a frame; the time of rendering includes the "
+                      "extra samples that a method asks for. The error at equal time is "
+                      "interpolated between measured points and never extrapolated. Memory: {}.",
+                      kYoungAge, kMemoryNote),
+          "method",
+          {{"relMSE", Best::kLowest},
+           {"temporal error", Best::kLowest},
+           {"PSNR, dB", Best::kHighest},
+           {"SSIM", Best::kHighest},
+           {"relMSE, young", Best::kLowest},
+           {"relMSE, old", Best::kLowest},
+           {"render, ms", Best::kLowest},
+           {"denoise, ms", Best::kLowest},
+           {"extra spp"},
+           {"memory, MB"},
+           {fmt::format("relMSE at {:.4g} ms", equal_ms), Best::kLowest}},
+          {}};
+}
+
+PageTable figures_table(const ComparePlan& plan, const CaseResults& results) {
   const EqualTime equal = equal_time(plan, results);
-  PageTable table{
-      fmt::format("{} spp, means over frames {}", plan.shown_spp(),
-                  format_frame_range(plan.measured)),
-      fmt::format(
-          "Best in bold. Young pixels: fewer than {} frames of history. Time: CPU, a frame; "
-          "rendering counts the further samples that a method asks for. Error at equal time "
-          "is read off the plot, between measured points only. Memory: {}.",
-          kYoungAge, kMemoryNote),
-      "method",
-      {{"relMSE", Best::kLowest},
-       {"temporal error", Best::kLowest},
-       {"PSNR, dB", Best::kHighest},
-       {"SSIM", Best::kHighest},
-       {"relMSE, young", Best::kLowest},
-       {"relMSE, old", Best::kLowest},
-       {"render, ms", Best::kLowest},
-       {"denoise, ms", Best::kLowest},
-       {"extra spp", Best::kNone},
-       {"memory, MB", Best::kNone},
-       {fmt::format("relMSE at {:.4g} ms", equal.ms), Best::kLowest}},
-      {}};
+  PageTable table = empty_figures_table(plan, equal.ms);
   for (const Contender& contender : plan.contenders) {
     const Cell& cell = *results.find(contender.label, plan.shown_spp());
     const auto all = [&](Metric m) { return cell_of(figure(cell, PixelSet::kSurface, m)); };
@@ -109,43 +112,59 @@ TableCell ratio(const TableCell& of, const TableCell& to) {
   return a && b && *b > 0.0 ? TableCell(*a / *b) : TableCell();
 }
 
-// A row for a method with all its parts, and one without each.
-void add_ablation(const ComparePlan& plan, const CaseResults& results, PageSection& section) {
-  PageTable table{fmt::format("What each part is worth, {} spp", plan.shown_spp()),
-                  "Factors are of the method with all its parts: above 1 without a part, it lowers "
-                  "error or saves time.",
-                  "method",
-                  {{"relMSE"},
-                   {"factor"},
-                   {"temporal error"},
-                   {"factor"},
-                   {"render, ms"},
-                   {"factor"},
-                   {"denoise, ms"},
-                   {"factor"}},
-                  {}};
-  const auto add_row = [&](const std::string& label, const Cell& whole) {
-    const Cell& cell = *results.find(label, plan.shown_spp());
-    TableRow row{label, {}};
-    const auto add = [&](const TableCell& value, const TableCell& all) {
-      row.cells.push_back(value);
-      row.cells.push_back(ratio(value, all));
-    };
-    for (const Metric m : {Metric::kRelmse, Metric::kTemporalError}) {
-      add(cell_of(figure(cell, PixelSet::kSurface, m)),
-          cell_of(figure(whole, PixelSet::kSurface, m)));
-    }
-    add(cell.render_ms, whole.render_ms);
-    add(cell.denoise_ms, whole.denoise_ms);
-    table.rows.push_back(std::move(row));
+// The figures of `cell`, each followed by its ratio to the figure of `whole`.
+TableRow ablation_row(const std::string& label, const Cell& cell, const Cell& whole) {
+  TableRow row{label, {}};
+  const auto add = [&](const TableCell& value, const TableCell& of_whole) {
+    row.cells.push_back(value);
+    row.cells.push_back(ratio(value, of_whole));
   };
+  for (const Metric m : {Metric::kRelmse, Metric::kTemporalError}) {
+    add(cell_of(figure(cell, PixelSet::kSurface, m)),
+        cell_of(figure(whole, PixelSet::kSurface, m)));
+  }
+  add(cell.render_ms, whole.render_ms);
+  add(cell.denoise_ms, whole.denoise_ms);
+  return row;
+}
+
+// One row for a method with all its parts, and one without each; nothing if no contender lacks one.
+void add_ablation(const ComparePlan& plan, const CaseResults& results, PageSection& section) {
+  PageTable table{
+      fmt::format("What each part is worth, {} spp", plan.shown_spp()),
+      "A factor is the ratio to the method with all its parts. If it is above 1 without "
+      "a part, that part lowers the error or saves time.",
+      "method",
+      {{"relMSE"},
+       {"factor"},
+       {"temporal error"},
+       {"factor"},
+       {"render, ms"},
+       {"factor"},
+       {"denoise, ms"},
+       {"factor"}},
+      {}};
   for (const Contender& contender : plan.contenders) {
     if (contender.without.empty()) continue;
     const Cell& whole = *results.find(contender.method, plan.shown_spp());
-    if (table.rows.empty()) add_row(contender.method, whole);
-    add_row(contender.label, whole);
+    if (table.rows.empty()) table.rows.push_back(ablation_row(contender.method, whole, whole));
+    const Cell& cell = *results.find(contender.label, plan.shown_spp());
+    table.rows.push_back(ablation_row(contender.label, cell, whole));
   }
   if (!table.rows.empty()) section.tables.push_back(std::move(table));
+}
+
+PageSection setup_section(const ComparePlan& plan) {
+  const Machine machine = this_machine();
+  PageSection section{"Setup", "", {}, {}, {}};
+  section.tables = {
+      facts_table("Machine and settings",
+                  {{"processor", fmt::format("{}, {} cores", machine.processor, machine.cores)},
+                   {"software", program_version() + ", " + machine.compiler},
+                   {"seed", fmt::format("{}", plan.seed)},
+                   {"bounces", fmt::format("{}", plan.bounces)},
+                   {"bases", fmt::format("up to {}", plan.bases)}})};
+  return section;
 }
 
 }  // namespace
@@ -154,19 +173,14 @@ Page compare_page(const ComparePlan& plan, const std::vector<CaseResults>& resul
                   std::vector<PageGallery> galleries) {
   EL_CHECK(galleries.size() == results.size(), "{} galleries for {} scenes", galleries.size(),
            results.size());
-  const Machine machine = this_machine();
   Page page;
-  page.title = "Denoisers, run time against error";
+  page.title = "Denoisers compared: error against run time";
   page.subtitle = fmt::format(
-      "{} × {} pixels, frames {} after {} of history; indirect light times albedo, against two "
-      "references of {} samples each, so that their noise drops out",
+      "{} × {} pixels, frames {} after {} frames of history. The error is that of indirect light "
+      "times albedo against two independent references of {} samples a pixel each; their own "
+      "noise cancels out.",
       plan.extent.width, plan.extent.height, format_frame_range(plan.measured),
       plan.frames.size() - plan.measured.size(), plan.reference_spp);
-  page.summary = {{"processor", fmt::format("{}, {} cores", machine.processor, machine.cores)},
-                  {"software", program_version() + ", " + machine.compiler},
-                  {"seed", fmt::format("{}", plan.seed)},
-                  {"bounces", fmt::format("{}", plan.bounces)},
-                  {"bases", fmt::format("up to {}", plan.bases)}};
   for (const Contender& contender : plan.contenders) page.names.push_back(contender.label);
   for (std::size_t i = 0; i < results.size(); ++i) {
     PageSection section{results[i].scene.name, results[i].title, {}, {}, {}};
@@ -178,6 +192,7 @@ Page compare_page(const ComparePlan& plan, const std::vector<CaseResults>& resul
     section.galleries = {std::move(galleries[i])};
     page.sections.push_back(std::move(section));
   }
+  page.sections.push_back(setup_section(plan));
   return page;
 }
 

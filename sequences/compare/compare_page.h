@@ -5,13 +5,14 @@
 #include <vector>
 
 #include "sequences/compare/compare_results.h"
-#include "sequences/pages/page_builder.h"
+#include "sequences/pages/page.h"
 
 namespace eigenlight {
 
-/// A section for each scene: relMSE against CPU time with the Pareto front, relMSE and temporal
-/// error over the frames, the table, what each part of a method is worth (where contenders lack
-/// one), and its gallery, of which there must be one for each scene.
+/// For each scene a section with relMSE against CPU time and its Pareto front, relMSE and temporal
+/// error over the frames, a table of all figures, a table of what each part of a method is worth
+/// (if a contender lacks a part), and the gallery of the scene. A last section holds machine and
+/// settings. Throws std::invalid_argument unless there is one gallery for each scene.
 [[nodiscard]] Page compare_page(const ComparePlan& plan, const std::vector<CaseResults>& results,
                                 std::vector<PageGallery> galleries);
 

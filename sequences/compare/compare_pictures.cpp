@@ -13,19 +13,20 @@
 #include "sequences/files/exr_io.h"
 #include "sequences/files/file_pattern.h"
 #include "sequences/files/ldr_image.h"
-#include "sequences/pages/develop.h"
+#include "sequences/pages/thin_frames.h"
+#include "sequences/pages/tone_map.h"
 
 namespace eigenlight {
 namespace {
 
-constexpr int kCropSide = 128;   // large enough to tell what is seen, small enough to enlarge
-constexpr int kHeatWidth = 480;  // two heat maps fit side by side on a phone held upright
-constexpr std::size_t kMostFrames = 24;  // one second
-constexpr int kQuality = 88;             // pages of three scenes and ten methods stay under 20 MB
-// Ends of the heat maps' logarithmic scale: error is seen from about a fiftieth on.
+constexpr int kCropSide = 128;   // large enough to recognize the place, small enough to enlarge
+constexpr int kHeatWidth = 480;  // pixels
+constexpr std::size_t kMostFrames = 24;
+constexpr int kQuality = 88;  // pages of three scenes and ten methods stay under 20 MB
+// Ends of the logarithmic scale of heat maps. A viewer sees an error from about a fiftieth on.
 constexpr double kLow = 0.02, kHigh = 2.0;
 
-// Black, blue, red, yellow, white: lightness rises all along, so that gray prints keep the order.
+// Black, violet, red, orange, yellow: the lightness rises steadily, so gray prints keep the order.
 constexpr std::array<std::array<double, 3>, 6> kRamp{
     {{0, 0, 4}, {66, 10, 104}, {147, 38, 103}, {221, 81, 58}, {252, 165, 10}, {252, 255, 164}}};
 
@@ -51,7 +52,7 @@ std::string uri(const Plane<std::uint8_t>& picture) {
   return jpeg_data_uri(encode_jpeg(picture, kQuality));
 }
 
-// Error of one picture over sqrt(r^2 + 0.01), per channel.
+// (t - r) / sqrt(r^2 + 0.01) for each channel, with the reference r.
 Planes<3> relative_error(const Planes<3>& test, const Planes<3>& reference) {
   Planes<3> error = make_planes<3>(test[0].extent());
   for (std::size_t c = 0; c < 3; ++c) {
@@ -75,7 +76,7 @@ Planes<3> difference(const Planes<3>& a, const Planes<3>& b) {
   return out;
 }
 
-// Mean square over a rectangle and the channels; NaN and Inf are left out.
+// Mean square over a rectangle and the channels, without NaN and Inf.
 double mean_square(const Planes<3>& error, const Rect& tile) {
   double sum = 0.0, count = 0.0;
   for (const Plane<float>& plane : error) {
@@ -94,7 +95,7 @@ double mean_square(const Planes<3>& error, const Rect& tile) {
 Plane<std::uint8_t> heat_map(const Planes<3>& error) {
   const Extent extent = error[0].extent();
   const int factor = (extent.width + kHeatWidth - 1) / kHeatWidth;
-  Plane<std::uint8_t> picture(Developer::shrunk(extent, factor), 3);
+  Plane<std::uint8_t> picture(ToneMap::shrunk(extent, factor), 3);
   parallel_for(picture.height(), [&](int y) {
     for (int x = 0; x < picture.width(); ++x) {
       const Rect block{x * factor, y * factor, (x + 1) * factor, (y + 1) * factor};
@@ -117,23 +118,22 @@ Planes<3> cut_out(const Planes<3>& image, const Rect& tile) {
   return out;
 }
 
-std::vector<int> thin(const std::vector<int>& frames) {
-  const std::size_t step = (frames.size() + kMostFrames - 1) / kMostFrames;
-  std::vector<int> chosen;
-  for (std::size_t i = 0; i < frames.size(); i += step) chosen.push_back(frames[i]);
-  return chosen;
-}
-
 class GalleryMaker {
  public:
   explicit GalleryMaker(const ComparePictures& in)
-      : in_(in), developer_(in.exposure), frames_(thin(in.plan.measured)), crop_(find_crop()) {}
+      : in_(in),
+        tone_map_(in.exposure),
+        frames_(thin_frames(in.plan.measured, kMostFrames)),
+        crop_(find_crop()) {}
 
   [[nodiscard]] PageGallery make() {
     PageGallery gallery;
-    gallery.title = "Where it is worst";
-    gallery.note =
-        fmt::format("{} spp. Keys: left and right step through the frames.", in_.plan.shown_spp());
+    gallery.title = "Pictures";
+    gallery.note = fmt::format("{} spp. Space plays, the left and right arrow keys step.",
+                               in_.plan.shown_spp());
+    // The frames are thinned, but shown at the pace of the sequence.
+    gallery.frames_per_second = kFramesPerSecond * static_cast<double>(frames_.size()) /
+                                static_cast<double>(in_.plan.measured.size());
     gallery.frames = frames_;
     gallery.kinds = kinds();
     gallery.tiles.push_back(new_tile("reference"));
@@ -150,12 +150,14 @@ class GalleryMaker {
     const std::string low = fmt::format("{}", kLow), high = fmt::format("{}", kHigh);
     return {
         {"crop",
-         fmt::format("Indirect light times albedo, pixels {}-{} x {}-{}, where {} has most error",
-                     crop_.x0, crop_.x1 - 1, crop_.y0, crop_.y1 - 1, in_.plan.ours().label)},
+         fmt::format("Indirect light times albedo in the square where {} has most error: columns "
+                     "{} to {}, rows {} to {}",
+                     in_.plan.ours().label, crop_.x0, crop_.x1 - 1, crop_.y0, crop_.y1 - 1)},
         {"error",
-         "Root of the relMSE of each pixel against the reference, whose own noise is in it",
+         "Root of the relMSE of each pixel against the reference, including the noise of the "
+         "reference",
          ramp_css(), low, high},
-        {"change of error", "The same of the change of the error since the frame before",
+        {"change of error", "The same for the change of the error since the previous frame",
          ramp_css(), low, high}};
   }
   [[nodiscard]] Planes<3> reference(int frame) const {
@@ -177,7 +179,7 @@ class GalleryMaker {
   [[nodiscard]] Planes<3> error(const Contender& contender, int frame) const {
     return relative_error(output(contender, frame), reference(frame));
   }
-  // Squares overlap by half, so that no fault is hidden by the border between two.
+  // Neighboring squares overlap by half, so that no fault is cut in two by all of them.
   [[nodiscard]] Tile find_crop() const {
     const Extent extent = in_.plan.extent;
     const int side = std::min({kCropSide, extent.width, extent.height});
@@ -200,8 +202,8 @@ class GalleryMaker {
   }
   void add_frame(int frame, std::vector<GalleryTile>& tiles) {
     const Planes<3> truth = reference(frame);
-    // Half the difference of A and B is as large as the error of their mean: heat maps cannot show
-    // less.
+    // The error of A against the mean of A and B is as large as the error of that mean: it shows
+    // the least error that the other heat maps can show.
     const Planes<3> half = in_.references.load(ReferenceCache::Half::kA, frame);
     add_picture(frame, truth, relative_error(half, truth), tiles[0], previous_[0]);
     for (std::size_t i = 0; i < in_.plan.contenders.size(); ++i) {
@@ -209,12 +211,12 @@ class GalleryMaker {
       add_picture(frame, image, relative_error(image, truth), tiles[i + 1], previous_[i + 1]);
     }
   }
-  // `before` is the error one frame ago, none at the first: then the change is black.
+  // `before` is the error of the previous frame. The first frame has none: its change is black.
   void add_picture(int frame, const Planes<3>& image, Planes<3> error, GalleryTile& tile,
                    Planes<3>& before) const {
     if (std::find(frames_.begin(), frames_.end(), frame) != frames_.end()) {
       const bool is_first = before[0].empty();
-      tile.pictures[0].push_back(uri(developer_.develop(cut_out(image, crop_), 1)));
+      tile.pictures[0].push_back(uri(tone_map_.apply(cut_out(image, crop_), 1)));
       tile.pictures[1].push_back(uri(heat_map(error)));
       tile.pictures[2].push_back(
           uri(heat_map(is_first ? difference(error, error) : difference(error, before))));
@@ -223,10 +225,10 @@ class GalleryMaker {
   }
 
   const ComparePictures& in_;
-  Developer developer_;
+  ToneMap tone_map_;
   std::vector<int> frames_;
   Tile crop_;
-  std::vector<Planes<3>> previous_;  // errors of the frame before, by tile
+  std::vector<Planes<3>> previous_;  // errors of the previous frame, by tile
 };
 
 }  // namespace

@@ -5,7 +5,7 @@
 
 #include "sequences/compare/compare_plan.h"
 #include "sequences/compare/reference_cache.h"
-#include "sequences/pages/page_builder.h"
+#include "sequences/pages/page.h"
 
 namespace eigenlight {
 
@@ -16,12 +16,14 @@ struct ComparePictures {
   float exposure = 1.0f;
 };
 
-/// A tile for the reference (the mean of both) and for each contender, of three kinds:
-///   crop    the square of up to 128 pixels a side where plan.ours() has most error
-///   error   root of the pixel's relMSE against the reference, the whole picture
-///   change  the same of the change of error since the frame before
-/// At most 24 measured frames, thinned evenly. Heat maps are no wider than 480 pixels and hold the
-/// references' noise too. Throws std::runtime_error naming a file that cannot be read.
+/// One tile for the reference (the mean of both references) and one for each contender, with three
+/// kinds of pictures:
+///   crop             a square of up to 128 x 128 pixels, placed where plan.ours() has most error
+///   error            root of the relMSE of each pixel against the reference, whole picture
+///   change of error  the same for the change of the error since the frame before
+/// Shows at most 24 measured frames (thin_frames()). Heat maps are at most 480 pixels wide and
+/// include the noise of the references. Throws std::runtime_error naming a file that cannot be
+/// read.
 [[nodiscard]] PageGallery compare_gallery(const ComparePictures& pictures);
 
 }  // namespace eigenlight

@@ -54,7 +54,7 @@ std::string size_text(const PaperRun& run) {
 
 PageSection claims_section(const Paper& paper, const PaperReport& report) {
   PageTable table{"What the paper claims",
-                  fmt::format("The paper's figures: {}.", paper.hardware),
+                  fmt::format("The paper measured on: {}.", paper.hardware),
                   "where",
                   {{"claim"}, {"the paper"}, {"here"}, {"verdict"}},
                   {}};
@@ -65,6 +65,18 @@ PageSection claims_section(const Paper& paper, const PaperReport& report) {
   }
   PageSection section{"Claims", "", {}, {}, {}};
   section.tables.push_back(std::move(table));
+  return section;
+}
+
+PageSection setup_section(const Paper& paper, const PaperRun& run) {
+  const Machine machine = this_machine();
+  PageSection section{"Setup", "", {}, {}, {}};
+  section.tables = {facts_table(
+      "Machine and settings",
+      {{"hardware of the paper", std::string(paper.hardware)},
+       {"processor here", fmt::format("{}, {} cores", machine.processor, machine.cores)},
+       {"software", program_version() + ", " + machine.compiler},
+       {"size and frames here", size_text(run)}})};
   return section;
 }
 
@@ -97,14 +109,9 @@ std::string paper_names() { return names_of(papers()); }
 const Paper& find_paper(std::string_view name) { return find_named(papers(), name, "paper"); }
 
 Page paper_page(const Paper& paper, const PaperRun& run, const PaperReport& report) {
-  const Machine machine = this_machine();
   Page page;
-  page.title = fmt::format("{}: the paper's figures and ours", paper.name);
+  page.title = fmt::format("{}: the figures of the paper and ours", paper.name);
   page.subtitle = paper.title;
-  page.summary = {{"their hardware", std::string(paper.hardware)},
-                  {"processor", fmt::format("{}, {} cores", machine.processor, machine.cores)},
-                  {"software", program_version() + ", " + machine.compiler},
-                  {"here", size_text(run)}};
   page.sections.push_back(claims_section(paper, report));
   std::set<std::string> seen;
   for (const PageSection& section : report.sections) {
@@ -115,6 +122,7 @@ Page paper_page(const Paper& paper, const PaperRun& run, const PaperReport& repo
       }
     }
   }
+  page.sections.push_back(setup_section(paper, run));
   return page;
 }
 

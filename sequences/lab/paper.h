@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "frame/plane.h"
-#include "sequences/pages/page_builder.h"
+#include "sequences/pages/page.h"
 
 namespace eigenlight {
 

@@ -1,5 +1,6 @@
-"""Runs checks inside pages that headless Chromium has loaded, and takes their pictures."""
+"""Runs checks inside pages that headless Chromium has loaded, and takes screenshots of them."""
 
+import html
 import json
 import pathlib
 import re
@@ -8,8 +9,13 @@ import subprocess
 import tempfile
 
 SKIPPED = 77
-# Errors of the page's own script come before the checks, so the trap goes first.
-TRAP = "<script>window.pageErrors = []; addEventListener('error', (e) => pageErrors.push(e.message));</script>"
+# Goes before all scripts of the page: collects errors, warnings and pictures that do not load.
+TRAP = """<script>
+window.pageErrors = [];
+addEventListener("error", (e) => pageErrors.push(e.message || `cannot load ${String(e.target.src).slice(0, 80)}`), true);
+addEventListener("unhandledrejection", (e) => pageErrors.push(`${e.reason}`));
+for (const kind of ["error", "warn"]) console[kind] = (...words) => pageErrors.push(words.join(" "));
+</script>"""
 
 
 def is_there():
@@ -26,37 +32,50 @@ def chromium(arguments):
             capture_output=True, text=True, timeout=240, check=True).stdout
 
 
-def run_checks(page, what, script):
-    """Appends `script`, which leaves its results in <pre id=results>; the failures, as lines."""
+def framed(page, width, height):
+    """A file beside `page` that shows it in a frame: a window of Chromium is at least 500 pixels wide.
+    It receives the results of checks and puts them into <pre id=results>."""
+    frame = page.with_name("frame.html")
+    frame.write_text(f"""<!DOCTYPE html><meta name="color-scheme" content="light dark">
+<body style="margin: 0"><iframe src="{page.name}" style="border: 0; width: {width}px; height: {height}px"></iframe>
+<script>
+addEventListener("message", (e) => {{
+  const out = document.body.appendChild(document.createElement("pre"));
+  out.id = "results";
+  out.textContent = e.data;
+}});
+</script>""")
+    return frame.as_uri()
+
+
+def run_checks(page, what, script, width):
+    """Runs `script`, which posts its results to the parent, in a copy of the page; returns the failures
+    as lines."""
     tested = page.with_name("tested.html")
     text = page.read_text().replace("<head>", "<head>" + TRAP, 1)
     tested.write_text(text.replace("</body>", f"<script>{script}</script></body>"))
-    shown = chromium(["--window-size=1200,900", "--virtual-time-budget=15000", "--dump-dom", tested.as_uri()])
+    shown = chromium([f"--window-size={width},900", "--virtual-time-budget=15000", "--dump-dom",
+                      framed(tested, width, 900)])
     found = re.search(r'<pre id="results">(.*?)</pre>', shown, re.S)
     if not found:
         return [f"{what}: the checks never finished"]
-    results = json.loads(found.group(1).replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&"))
+    results = json.loads(html.unescape(found.group(1)))
     print(f"{what}: {results['passed']} checks passed, {len(results['failed'])} failed")
     return [f"{what}: {failure}" for failure in results["failed"]]
 
 
-def take_pictures(page, directory, height=1900):
+def take_pictures(page, directory):
+    """light and dark at 1400 pixels, light-narrow and dark-narrow at 400 pixels"""
     directory.mkdir(parents=True, exist_ok=True)
-    for name, width, dark in [("light", 1200, False), ("dark", 1200, True), ("phone", 500, False)]:
-        options = ["--force-dark-mode", "--blink-settings=preferredColorScheme=0"] if dark else []
-        size = f"--window-size={width},{height if width > 1000 else 3 * height // 2}"
-        chromium([*options, size, f"--screenshot={directory / (name + '.png')}", "--virtual-time-budget=5000",
-                  page.as_uri()])
+    for width, height, suffix in ((1400, 2200, ""), (400, 3400, "-narrow")):
+        for name in ("light", "dark"):
+            scheme = ["--blink-settings=preferredColorScheme=0"] if name == "dark" else []
+            chromium([*scheme, f"--window-size={width},{height}", "--virtual-time-budget=5000",
+                      f"--screenshot={directory / (name + suffix + '.png')}", framed(page, width, height)])
 
 
 def pictures_directory(arguments):
-    """Where --pictures asks for pictures, or None."""
+    """The directory that --pictures names, or None."""
     if "--pictures" not in arguments:
         return None
     return pathlib.Path(arguments[arguments.index("--pictures") + 1])
-
-
-def report(failed):
-    for what in failed:
-        print("FAILED", what)
-    return 1 if failed else 0

@@ -64,6 +64,8 @@ inline FrameReport fake_report(int number, const FakeRun& run) {
   report.new_pixels = report.cut ? report.surface_pixels : pixels / 30;
   report.mean_rank = 1.0 + 0.5 * std::sin(0.2 * number);
   report.skipped_surface = pixels / 5;
+  report.skipped_correction = pixels / 2;
+  report.skipped_geometry = pixels / 10;
   return report;
 }
 

@@ -1,4 +1,4 @@
-// The sources of the pages, from sequences/page/.
+// The parts of a page that are the same in all pages, from the files of this folder.
 #pragma once
 
 #include <string_view>
@@ -9,10 +9,5 @@ namespace eigenlight {
 extern const std::string_view kPageHtml;
 extern const std::string_view kPageCss;
 extern const std::string_view kPageJs;
-
-/// The same for pages of page_builder.h.
-extern const std::string_view kBuilderHtml;
-extern const std::string_view kBuilderCss;
-extern const std::string_view kBuilderJs;
 
 }  // namespace eigenlight

@@ -1,0 +1,228 @@
+#include "sequences/pages/run_page.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+
+#include "sequences/files/atomic_file.h"
+#include "sequences/pages/run_pictures.h"
+#include "sequences/pages/run_records.h"
+
+namespace eigenlight {
+namespace {
+
+using Values = std::vector<double>;
+
+double total(const Values& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
+
+double mean(const Values& values) { return total(values) / static_cast<double>(values.size()); }
+
+// ---- stage times
+
+struct StageTimes {
+  std::string name;
+  Values wall_ms, cpu_ms;  // by frame
+};
+
+// In the order of the log. Stages that never took time are left out.
+std::vector<StageTimes> stage_times(const RunRecords& records) {
+  std::vector<StageTimes> stages;
+  // Named, because items() does not keep a temporary alive.
+  const auto first = records.frames.front().get<nlohmann::ordered_json>("/stages");
+  for (const auto& [name, times] : first.items()) {
+    StageTimes stage{name, records.column<double>("/stages/" + name + "/wall_ms"),
+                     records.column<double>("/stages/" + name + "/cpu_ms")};
+    if (total(stage.wall_ms) > 0.0 || total(stage.cpu_ms) > 0.0) stages.push_back(std::move(stage));
+  }
+  return stages;
+}
+
+PageTable time_table(const std::vector<StageTimes>& stages) {
+  PageTable table{"Mean time per frame", "", "stage", {{"wall clock, ms"}, {"CPU, ms"}}, {}};
+  double wall = 0.0, cpu = 0.0;
+  for (const StageTimes& stage : stages) {
+    table.rows.push_back({stage.name, {mean(stage.wall_ms), mean(stage.cpu_ms)}});
+    wall += mean(stage.wall_ms);
+    cpu += mean(stage.cpu_ms);
+  }
+  table.rows.push_back({"all", {wall, cpu}, true});
+  return table;
+}
+
+PageBackground background_of(const std::vector<StageTimes>& stages) {
+  PageBackground background{"rendering and files", {}};
+  for (const StageTimes& stage : stages) {
+    for (const char* name : {"source", "resample", "antialias", "write"}) {
+      if (stage.name == name) background.names.emplace_back(name);
+    }
+  }
+  return background;
+}
+
+// ---- plots over the frames
+
+PlotSeries series_of(std::string name, const std::vector<int>& frames, const Values& values) {
+  PlotSeries series{std::move(name), {}};
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    series.points.push_back({static_cast<double>(frames[i]), values[i]});
+  }
+  return series;
+}
+
+PagePlot time_plot(const std::vector<int>& frames, const std::vector<StageTimes>& stages) {
+  PagePlot plot{"Time per stage", "", {"frame"}, {"wall clock, ms"}, {}};
+  plot.frames = frames;
+  plot.is_stacked = true;
+  for (const StageTimes& stage : stages) {
+    plot.series.push_back(series_of(stage.name, frames, stage.wall_ms));
+  }
+  return plot;
+}
+
+// A value that exists only where a frame shows a surface, times `factor`.
+Values on_surfaces(const RunRecords& records, const char* pointer, double factor) {
+  Values values = records.column<double>(pointer);
+  const auto surface = records.column<std::int64_t>("/surface_pixels");
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    values[i] = surface[i] > 0 ? factor * values[i] : std::nan("");
+  }
+  return values;
+}
+
+PagePlot surface_plot(PagePlot plot, const char* name, const std::vector<int>& frames,
+                      const Values& values) {
+  plot.y.starts_at_zero = true;
+  plot.frames = frames;
+  plot.series = {series_of(name, frames, values)};
+  return plot;
+}
+
+PageSection frames_section(const RunRecords& records, const std::vector<int>& frames,
+                           const std::vector<StageTimes>& stages) {
+  PageSection section{"Over the frames", "Click a plot to see that frame.", {}, {}, {}};
+  section.plots.push_back(time_plot(frames, stages));
+  const char* share_note = "A cut may lie beyond the scale.";
+  PagePlot shares = surface_plot(
+      {"Pixels without history", share_note, {"frame"}, {"share of surface pixels, %"}, {}},
+      "new pixels", frames, on_surfaces(records, "/new_share", 100.0));
+  const auto cuts = records.column<bool>("/cut");
+  for (std::size_t i = 0; i < cuts.size(); ++i) {
+    if (cuts[i]) shares.off_scale.push_back(frames[i]);
+  }
+  section.plots.push_back(std::move(shares));
+  section.plots.push_back(surface_plot(
+      {"Rank", "Mean number of bases in use, over the tiles with a surface.", {"frame"}, {"bases"}, {}},
+      "rank", frames, on_surfaces(records, "/rank", 1.0)));
+  return section;
+}
+
+// ---- tables
+
+// Counters that the log has and this list has not are shown by their own name.
+std::string skip_text(const std::string& key) {
+  constexpr std::pair<const char*, const char*> kTexts[] = {
+      {"warp", "reprojection: nothing moved"},
+      {"surface", "all steps: tile without a surface"},
+      {"filter", "a-trous passes: variance is low enough"},
+      {"geometry", "edge weights of the first a-trous pass: pixel and taps lie in one plane"},
+      {"guided", "guided filter: tile without young pixels"},
+      {"correction", "correction: no unexpected change of light nearby"}};
+  for (const auto& [name, text] : kTexts) {
+    if (key == name) return text;
+  }
+  return key;
+}
+
+PageTable skip_table(const RunRecords& records, double pixels) {
+  PageTable table{
+      "Skipped work, mean per frame", "", "step and reason", {{"pixels"}, {"share, %"}}, {}};
+  const auto first = records.frames.front().get<nlohmann::ordered_json>("/skipped");
+  for (const auto& [key, count] : first.items()) {
+    const double skipped = mean(records.column<double>("/skipped/" + key));
+    table.rows.push_back({skip_text(key), {std::round(skipped), 100.0 * skipped / pixels}});
+  }
+  return table;
+}
+
+std::string millions(double value) { return fmt::format("{:.3g} million", value / 1e6); }
+
+std::string rays_per_second(const RunRecords& records) {
+  const double rays = total(records.column<double>("/rays"));
+  const double ms = total(records.column<double>("/stages/source/wall_ms")) +
+                    total(records.column<double>("/stages/resample/wall_ms"));
+  return ms > 0.0 && rays > 0.0 ? millions(1e3 * rays / ms) : "none traced";
+}
+
+PageTable run_table(const RunRecords& records) {
+  const RunRecord& run = records.run;
+  const auto sum = [&](const char* pointer) { return total(records.column<double>(pointer)); };
+  const auto text = [&](const char* pointer) { return run.get<std::string>(pointer); };
+  std::vector<std::pair<std::string, std::string>> facts{{"scene", text("/scene")},
+                                                         {"perturbation", text("/perturb")},
+                                                         {"method", text("/method")},
+                                                         {"antialiasing", text("/antialias")}};
+  const auto add = [&](const char* name, std::string value) {
+    facts.emplace_back(name, std::move(value));
+  };
+  if (!text("/without").empty()) add("without", text("/without"));
+  if (sum("/rank") > 0.0) add("bases", fmt::format("up to {}", run.get<int>("/bases")));
+  add("size", fmt::format("{} × {} pixels", run.get<int>("/width"), run.get<int>("/height")));
+  add("frames", fmt::format("{} of {} ({})", records.frames.size(), run.get<int>("/frame_count"),
+                            text("/frames")));
+  add("samples per pixel", fmt::format("{}", run.get<int>("/spp")));
+  if (const double surface = sum("/surface_pixels"); surface > 0.0) {
+    add("with resampling", fmt::format("{:.2f} on surfaces", sum("/samples") / surface));
+  }
+  add("rays per second", rays_per_second(records));
+  add("rays per frame", millions(mean(records.column<double>("/rays"))));
+  add("excluded as NaN or Inf", fmt::format("{:.0f} pixels, {:.0f} samples",
+                                            sum("/non_finite_pixels"), sum("/non_finite_samples")));
+  add("seed", fmt::format("{}", run.get<std::uint32_t>("/seed")));
+  add("software", text("/software"));
+  return facts_table("Run", facts);
+}
+
+PageSection player_section(const RunRecords& records, const std::filesystem::path& dir,
+                           const std::vector<int>& frames) {
+  PictureOptions options;
+  options.method = records.run.get<std::string>("/method");
+  options.exposure = records.run.get<float>("/exposure");
+  options.frames_per_second = records.run.get<double>("/frames_per_second");
+  PageGallery player = run_pictures(dir, frames, options);
+  PageSection section;
+  if (player.frames.empty()) {
+    section.note = "No pictures: no file of a frame holds color or indirect light.";
+  } else {
+    section.galleries = {std::move(player)};
+  }
+  return section;
+}
+
+}  // namespace
+
+Page run_page(const std::filesystem::path& dir) {
+  const RunRecords records = read_run_records(dir);
+  const auto frames = records.column<int>("/frame");
+  const std::vector<StageTimes> stages = stage_times(records);
+  const auto scene = records.run.get<std::string>("/scene");
+  const auto title = records.run.get<std::string>("/title");
+  const double pixels = records.run.get<double>("/width") * records.run.get<double>("/height");
+  Page page;
+  page.title =
+      fmt::format("{}: {}", title.empty() ? scene : title, records.run.get<std::string>("/method"));
+  page.subtitle = "Eigenlight: temporal denoising of path-traced indirect light";
+  for (const StageTimes& stage : stages) page.names.push_back(stage.name);
+  page.background = background_of(stages);
+  PageSection summary{"Summary", "", {}, {}, {}};
+  summary.tables = {run_table(records), time_table(stages), skip_table(records, pixels)};
+  page.sections = {player_section(records, dir, frames), std::move(summary),
+                   frames_section(records, frames, stages)};
+  return page;
+}
+
+void write_run_page(const std::filesystem::path& dir) {
+  write_file_atomically(dir / "index.html", to_html(run_page(dir)));
+}
+
+}  // namespace eigenlight
