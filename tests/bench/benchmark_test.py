@@ -138,6 +138,13 @@ class ChartTest(FolderTest):
         for wanted in ("error & time", "ms", "relMSE", "ours", "100", "0.1"):
             self.assertIn(wanted, words)
 
+    def test_draws_a_plot_in_json(self):
+        plot = {"title": "t", "x": "frame", "y": "error", "log": [False, True],
+                "series": {"a": [[0, 1e-6], [1, 1e-5]], "long": [[i, 1e-4] for i in range(61)]}}
+        root = xml.etree.ElementTree.fromstring(Chart.from_json(plot).svg())
+        self.assertEqual(len(root.findall(f"{SVG}polyline")), 2)
+        self.assertEqual(len(root.findall(f"{SVG}circle")), 2, "long series have no dots")
+
     def test_labels_do_not_overlap(self):
         places = spread([10.0, 50.0, 12.0, 11.0], 17)
         self.assertEqual(places, [10.0, 61.0, 44.0, 27.0])

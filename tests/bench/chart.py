@@ -1,13 +1,20 @@
-"""Line charts as SVG: labels with units, dark and light, readable at the width of a README."""
+#!/usr/bin/env python3
+"""Draws line charts as SVG for READMEs, light or dark as the reader's system is.
 
+As a program: chart.py PLOT.json OUT.svg draws a plot of Chart.from_json().
+"""
+
+import json
 import math
 import os
 import pathlib
+import sys
 import xml.sax.saxutils
 
 WIDTH, HEIGHT = 760, 440
 LEFT, RIGHT, TOP, BOTTOM = 78, 170, 46, 58
 ENOUGH_TICKS = 4
+MOST_DOTS = 60  # of a series; a longer one is a line only
 
 # Okabe and Ito 2008: told apart by all kinds of color vision, on light and on dark.
 COLORS = ["#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c8c8c", "#b09500"]
@@ -81,6 +88,15 @@ class Chart:
         self.title, self.labels, self.is_log = title, (x_label, y_label), is_log
         self.series = {}
 
+    @classmethod
+    def from_json(cls, plot):
+        """A plot as results.json of `compare --paper` has it: title, x, y (labels), series {name: [[x,
+        y]]}, and perhaps log [x, y]."""
+        chart = cls(plot["title"], plot["x"], plot["y"], plot.get("log", (True, True)))
+        for name, points in plot["series"].items():
+            chart.add(name, [tuple(point) for point in points])
+        return chart
+
     def add(self, name, points):
         if points:
             self.series[name] = sorted(points)
@@ -129,7 +145,7 @@ class Chart:
             parts.append(f'<polyline points="{path}" fill="none" stroke="{color}" '
                          f'stroke-width="2.2"/>')
             parts += [f'<circle cx="{a:.1f}" cy="{b:.1f}" r="3.6" fill="{color}"/>'
-                      for a, b in places]
+                      for a, b in places if len(places) <= MOST_DOTS]
             right = WIDTH - RIGHT + 12
             parts.append(f'<path d="M{places[-1][0] + 5:.1f} {places[-1][1]:.1f}L{right - 3} '
                          f'{ends[i]:.1f}" stroke="{color}" stroke-width="0.8" opacity="0.6"/>')
@@ -143,3 +159,13 @@ class Chart:
         temporary = path.with_suffix(".part")
         temporary.write_text(self.svg(colors), encoding="utf-8")
         os.replace(temporary, path)
+
+
+def main():
+    if len(sys.argv) != 3:
+        sys.exit(__doc__)
+    Chart.from_json(json.loads(pathlib.Path(sys.argv[1]).read_text(encoding="utf-8"))).write(sys.argv[2])
+
+
+if __name__ == "__main__":
+    main()

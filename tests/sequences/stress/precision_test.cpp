@@ -1,5 +1,4 @@
-// The float pipeline against its double twin, for as many frames as a test may take;
-// `precision_plot` runs 500 and draws them.
+// The pipeline in float against its twin in double. `precision_curves` (tests/bench) runs more frames.
 #include <gtest/gtest.h>
 
 #include "tests/support/precision_run.h"
