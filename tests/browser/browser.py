@@ -48,14 +48,18 @@ addEventListener("message", (e) => {{
     return frame.as_uri()
 
 
-def run_checks(page, what, script, width):
+def scheme_options(scheme):
+    return ["--blink-settings=preferredColorScheme=0"] if scheme == "dark" else []
+
+
+def run_checks(page, what, script, width, scheme):
     """Runs `script`, which posts its results to the parent, in a copy of the page; returns the failures
-    as lines."""
+    as lines. `scheme` is light or dark."""
     tested = page.with_name("tested.html")
     text = page.read_text().replace("<head>", "<head>" + TRAP, 1)
     tested.write_text(text.replace("</body>", f"<script>{script}</script></body>"))
-    shown = chromium([f"--window-size={width},900", "--virtual-time-budget=15000", "--dump-dom",
-                      framed(tested, width, 900)])
+    shown = chromium([*scheme_options(scheme), f"--window-size={width},900", "--virtual-time-budget=15000",
+                      "--dump-dom", framed(tested, width, 900)])
     found = re.search(r'<pre id="results">(.*?)</pre>', shown, re.S)
     if not found:
         return [f"{what}: the checks never finished"]
@@ -68,10 +72,9 @@ def take_pictures(page, directory):
     """light and dark at 1400 pixels, light-narrow and dark-narrow at 400 pixels"""
     directory.mkdir(parents=True, exist_ok=True)
     for width, height, suffix in ((1400, 2200, ""), (400, 3400, "-narrow")):
-        for name in ("light", "dark"):
-            scheme = ["--blink-settings=preferredColorScheme=0"] if name == "dark" else []
-            chromium([*scheme, f"--window-size={width},{height}", "--virtual-time-budget=5000",
-                      f"--screenshot={directory / (name + suffix + '.png')}", framed(page, width, height)])
+        for scheme in ("light", "dark"):
+            chromium([*scheme_options(scheme), f"--window-size={width},{height}", "--virtual-time-budget=5000",
+                      f"--screenshot={directory / (scheme + suffix + '.png')}", framed(page, width, height)])
 
 
 def pictures_directory(arguments):

@@ -1,4 +1,5 @@
-// Appended to a copy of a page, before the checks of its kind, which define checkPage().
+// Appended to a copy of a page, after `wanted` and before the checks of its kind, which define
+// checkPage().
 const results = { passed: 0, failed: [] };
 
 function check(what, condition) {
@@ -10,7 +11,8 @@ const wait = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 const all = (selector, within = document) => [...within.querySelectorAll(selector)];
 const press = (key, target = document.body) => target.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true, cancelable: true }));
 const outputs = () => all(".controls output").map((output) => output.textContent);
-const isNarrow = innerWidth < 600;
+// Mean of red, green and blue of a computed color, in [0, 255].
+const brightness = (rgb) => rgb.match(/\d+/g).slice(0, 3).reduce((sum, v) => sum + Number(v), 0) / 3;
 
 // Of one pixel of a plot, given in the coordinates of the plot.
 function pointAt(plot, type, x, y) {
@@ -20,13 +22,14 @@ function pointAt(plot, type, x, y) {
 
 function checkFile() {
   check("the page asks for no other file", performance.getEntriesByType("resource").every((entry) => entry.name.startsWith("data:")));
-  check("the window has the asked width", innerWidth === wantedWidth);
+  check("the window has the wanted width", innerWidth === wanted.width);
   check("the page is not wider than the window", document.documentElement.scrollWidth <= innerWidth);
   check("nothing is left of the template", !document.documentElement.outerHTML.includes("{" + "{"));
   check("ids are unique", new Set(all("[id]").map((node) => node.id)).size === all("[id]").length);
   check("buttons and inputs have a name", all("button, input").every((node) => node.textContent || node.ariaLabel || node.labels?.length));
-  const background = getComputedStyle(document.body).backgroundColor, ink = getComputedStyle(document.body).color;
-  check("text differs from its background", background !== ink);
+  const { backgroundColor, color: ink } = getComputedStyle(document.body);
+  const [back, text] = [backgroundColor, ink].map(brightness);
+  check("colors are those of the scheme", wanted.scheme === "dark" ? back < 50 && text > 200 : back > 200 && text < 50);
 }
 
 function checkTexts(plot) {
@@ -44,6 +47,7 @@ function checkPlot(plot) {
   const frame = plot.svg.querySelector("rect.frame").getBBox();
   const isInside = (b) => b.x >= frame.x - 1 && b.x + b.width <= frame.x + frame.width + 1 && b.y >= frame.y - 1 && b.y + b.height <= frame.y + frame.height + 1;
   check(`${plot.title}: it stays within the axes`, drawn.every((path) => isInside(path.getBBox())));
+  check(`${plot.title}: its text is not scaled`, Math.abs(plot.svg.getBoundingClientRect().width - plot.width) < 1);
   check(`${plot.title}: it fits its card`, plot.svg.getBoundingClientRect().right <= plot.host.parentElement.getBoundingClientRect().right);
 }
 

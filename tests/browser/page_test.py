@@ -1,7 +1,7 @@
 """Drives a page in headless Chromium: loads it, clicks, drags, presses keys, and reads what it shows.
 
 Usage: page_test.py MAKE_PAGES run|compare|paper [--pictures DIR]
-Each page is checked in a wide and in a narrow window. Exit status: 0, 1 if a check fails, 77
+Each page is checked in a wide, light window and in a narrow, dark one. Exit status: 0, 1 if a check fails, 77
 (skipped) without Chromium. --pictures writes screenshots of the pages to DIR.
 """
 
@@ -36,9 +36,10 @@ def main():
             kilobytes = page.stat().st_size / 1000
             if kilobytes > most_kilobytes:
                 failed.append(f"{name}: the page has {kilobytes:.0f} kB, at most {most_kilobytes} kB")
-            for width in (1400, 400):
-                failed += browser.run_checks(page, f"{name}, {width} px, {kilobytes:.0f} kB",
-                                             f"const wantedWidth = {width};\n{checks}", width)
+            for width, scheme in ((1400, "light"), (400, "dark")):
+                wanted = f'const wanted = {{ width: {width}, scheme: "{scheme}" }};\n'
+                failed += browser.run_checks(page, f"{name}, {width} px, {scheme}, {kilobytes:.0f} kB",
+                                             wanted + checks, width, scheme)
             if pictures:
                 browser.take_pictures(page, pictures / name)
     for what in failed:
