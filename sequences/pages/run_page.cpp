@@ -111,9 +111,13 @@ PageSection frames_section(const RunRecords& records, const std::vector<int>& fr
     if (cuts[i]) shares.off_scale.push_back(frames[i]);
   }
   section.plots.push_back(std::move(shares));
-  section.plots.push_back(surface_plot(
-      {"Rank", "Mean number of bases in use, over the tiles with a surface.", {"frame"}, {"bases"}, {}},
-      "rank", frames, on_surfaces(records, "/rank", 1.0)));
+  section.plots.push_back(
+      surface_plot({"Rank",
+                    "Mean number of bases in use, over the tiles with a surface.",
+                    {"frame"},
+                    {"bases"},
+                    {}},
+                   "rank", frames, on_surfaces(records, "/rank", 1.0)));
   return section;
 }
 

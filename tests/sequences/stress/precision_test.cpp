@@ -1,4 +1,5 @@
-// The pipeline in float against its twin in double. `precision_curves` (tests/bench) runs more frames.
+// The pipeline in float against its twin in double. `precision_curves` (tests/bench) runs more
+// frames.
 #include <gtest/gtest.h>
 
 #include "tests/support/precision_run.h"
