@@ -1,6 +1,7 @@
 #include "sequences/pages/run_page.h"
 
-#include <algorithm>
+#include <fmt/format.h>
+
 #include <cmath>
 #include <cstdint>
 #include <numeric>

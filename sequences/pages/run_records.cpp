@@ -1,6 +1,9 @@
 #include "sequences/pages/run_records.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <stdexcept>
 #include <string_view>
 #include <utility>
 
@@ -35,6 +38,11 @@ std::vector<RunRecord> read_lines(const std::filesystem::path& path) {
 }
 
 }  // namespace
+
+void RunRecord::refuse(const std::string& pointer) const {
+  throw std::runtime_error(
+      fmt::format("{}: field '{}' is missing or has a wrong type", where, pointer.substr(1)));
+}
 
 RunRecords read_run_records(const std::filesystem::path& dir) {
   const std::filesystem::path run = dir / "run.json";

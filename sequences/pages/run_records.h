@@ -1,11 +1,8 @@
 // What `eigenlight render` wrote about a run: run.json and frames.jsonl.
 #pragma once
 
-#include <fmt/format.h>
-
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -23,10 +20,12 @@ struct RunRecord {
     try {
       return json.at(nlohmann::ordered_json::json_pointer(pointer)).get<T>();
     } catch (const nlohmann::json::exception&) {
-      throw std::runtime_error(
-          fmt::format("{}: field '{}' is missing or has a wrong type", where, pointer.substr(1)));
+      refuse(pointer);
     }
   }
+
+ private:
+  [[noreturn]] void refuse(const std::string& pointer) const;
 };
 
 struct RunRecords {
