@@ -12,6 +12,7 @@
 #include <new>
 #include <span>
 #include <type_traits>
+#include <utility>
 
 #include "frame/check.h"
 
@@ -100,6 +101,8 @@ class Plane {
         ::operator new (free.start + bytes + margin, std::align_val_t{free.alignment}));
     data_ = {reinterpret_cast<T*>(memory + free.start), free};
     std::memset(memory + free.start - margin, 0, margin + bytes + margin);
+    rows_ = std::make_unique<const T*[]>(static_cast<std::size_t>(extent.height));
+    find_rows();
   }
 
   /// A view of `extent` values whose rows start `row_bytes` apart; negative for images from the
@@ -108,7 +111,7 @@ class Plane {
   /// std::invalid_argument on a bad size, null, a stride shorter than a row, or one that is no
   /// multiple of the size of T.
   [[nodiscard]] static Plane view(const T* first, Extent extent, std::ptrdiff_t row_bytes);
-  [[nodiscard]] bool is_view() const { return foreign_ != nullptr; }
+  [[nodiscard]] bool is_view() const { return is_view_; }
 
   [[nodiscard]] Extent extent() const { return extent_; }
   [[nodiscard]] int width() const { return extent_.width; }
@@ -125,8 +128,7 @@ class Plane {
   }
   [[nodiscard]] const T* row(int y) const {
     EL_DCHECK(y >= 0 && y < extent_.height);
-    if (is_view()) return view_row(y);
-    return data_.get() + stride_ * static_cast<std::size_t>(y);
+    return rows_[static_cast<std::size_t>(y)];
   }
   /// First value of pixel (x, y).
   [[nodiscard]] T* at(int x, int y) { return row(y) + x * channels_; }
@@ -145,6 +147,7 @@ class Plane {
     }
     channels_ = channels;
     stride_ = stride;
+    find_rows();
     fill(T{});
   }
 
@@ -194,12 +197,6 @@ class Plane {
     }
   };
 
-  // Of a view: the first and the last row lie in data_, one behind the other.
-  [[nodiscard]] const T* view_row(int y) const {
-    if (y == 0) return data_.get();
-    if (y == extent_.height - 1) return data_.get() + stride_;
-    return foreign_ + foreign_stride_ * y;
-  }
   static void check_channels(int channels) {
     EL_CHECK(channels >= 1 && channels <= 64, "a pixel holds 1 to 64 values, not {}", channels);
   }
@@ -207,6 +204,11 @@ class Plane {
     const std::size_t row =
         static_cast<std::size_t>(extent_.width) * static_cast<std::size_t>(channels) * sizeof(T);
     return detail::apart((row + kLine - 1) / kLine) * kLine / sizeof(T);
+  }
+  void find_rows() {
+    for (int y = 0; y < extent_.height; ++y) {
+      rows_[static_cast<std::size_t>(y)] = data_.get() + stride_ * static_cast<std::size_t>(y);
+    }
   }
   [[nodiscard]] std::size_t storage_size() const {
     return empty() ? 0 : stride_ * static_cast<std::size_t>(extent_.height);
@@ -216,8 +218,10 @@ class Plane {
   int channels_ = 1;
   std::size_t stride_ = 0, capacity_ = 0;  // values
   std::unique_ptr<T[], Free> data_;
-  const T* foreign_ = nullptr;  // row 0 of a view; null: the values are in data_
-  std::ptrdiff_t foreign_stride_ = 0;
+  // Where constant rows start: those of a view lie in two blocks of memory. Anything longer than
+  // one load here keeps kernels from being inlined.
+  std::unique_ptr<const T*[]> rows_;
+  bool is_view_ = false;
 };
 
 template <typename T>
@@ -243,9 +247,13 @@ Plane<T> Plane<T>::view(const T* first, Extent extent, std::ptrdiff_t row_bytes)
   Plane view({extent.width, 2});
   copy_row(0, 0, view);
   copy_row(extent.height - 1, 1, view);
+  auto rows = std::make_unique<const T*[]>(static_cast<std::size_t>(extent.height));
+  for (int y = 0; y < extent.height; ++y) rows[static_cast<std::size_t>(y)] = first + stride * y;
+  rows[static_cast<std::size_t>(extent.height - 1)] = view.row(1);
+  rows[0] = view.row(0);
   view.extent_ = extent;
-  view.foreign_ = first;
-  view.foreign_stride_ = stride;
+  view.rows_ = std::move(rows);
+  view.is_view_ = true;
   return view;
 }
 

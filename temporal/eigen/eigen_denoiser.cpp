@@ -104,12 +104,12 @@ void EigenDenoiser::warp_row(const Tile& row) {
 const Plane<float>& EigenDenoiser::lowest_age() {
   if (layers() == 1) return layers_.front().old_age();
   for_each_segment(shared_.tiles(), [&](const Tile& row) {
-    for (int x = row.x0; x < row.x1; ++x) {
-      float lowest = layers_.front().old_age()(x, row.y0);
-      for (const LightLayer& layer : layers_) {
-        lowest = std::min(lowest, layer.old_age()(x, row.y0));
-      }
-      lowest_age_(x, row.y0) = lowest;
+    const int width = row.width();
+    float* lowest = lowest_age_.at(row.x0, row.y0);
+    std::copy_n(layers_.front().old_age().at(row.x0, row.y0), width, lowest);
+    for (const LightLayer& layer : layers_) {
+      const float* age = layer.old_age().at(row.x0, row.y0);
+      for (int i = 0; i < width; ++i) lowest[i] = age[i] < lowest[i] ? age[i] : lowest[i];
     }
   });
   return lowest_age_;
