@@ -20,11 +20,11 @@
 namespace eigenlight {
 namespace {
 
-// Small enough to share the work of a small image among many cores, large enough for neighboring
-// rays to share cache lines.
+// Small tiles balance a small image over many cores; larger tiles let neighboring rays share cache
+// lines.
 constexpr int kTileSide = 16;
 
-// Sequences of the two layers are independent of each other.
+// Direct and indirect light draw from independent random sequences.
 constexpr std::uint32_t kIndirectStream = 0;
 constexpr std::uint32_t kDirectStream = 1;
 
@@ -77,7 +77,7 @@ struct LiveSource::State {
   const Animation* animation;
   RenderOptions options;
   std::vector<int> frames;
-  std::size_t position = 0;  // in `frames`, of the next one
+  std::size_t position = 0;  // index in `frames` of the next frame
   EmbreeScene geometry;
   SurfaceTable surfaces;
   LightSet lights;
@@ -85,18 +85,18 @@ struct LiveSource::State {
   TileGrid grid;
   PreviousView previous;
   std::vector<glm::mat4> previous_poses;  // of all instances
-  Plane<GuideHit> hits;                   // of the frame that was delivered last
-  Plane<std::uint32_t> drawn;             // indirect samples of each pixel of that frame
+  Plane<GuideHit> hits;                   // of the last delivered frame
+  Plane<std::uint32_t> drawn;             // indirect samples drawn so far in each of its pixels
   std::vector<RayCounters> counters;      // per tile
 };
 
-// Camera, poses and lights of `frame.index` and of the frame before it.
+// Sets camera, poses and lights of `frame.index`, and remembers those of the previous frame.
 void LiveSource::State::pose(Frame& frame) {
   const SceneState now = animation->state(frame.index);
   const SceneState then = animation->state(frame.previous_index);
   EL_CHECK(then.poses.size() == now.poses.size(),
-           "frame {}: {} poses, frame {}: {}; expected one count", frame.index, now.poses.size(),
-           frame.previous_index, then.poses.size());
+           "frame {} has {} poses and frame {} has {}: expected the same number", frame.index,
+           now.poses.size(), frame.previous_index, then.poses.size());
   geometry.set_poses(now.poses);
   lights.update(now.lights);
   frame.camera = now.camera;
@@ -109,7 +109,8 @@ void LiveSource::State::pose(Frame& frame) {
   previous = {then.camera, then.lights, previous_poses};
 }
 
-// `count(x, y)` further samples of indirect light at each surface of the tile; 0 elsewhere.
+// Writes to `mean` the mean of `count(x, y)` new samples of indirect light at each surface pixel of
+// the tile, and 0 at all other pixels.
 template <typename Count>
 void LiveSource::State::draw(const Tile& tile, int frame, const Count& count, Planes<3>& mean,
                              RayCounters& tally) {
@@ -172,9 +173,11 @@ void LiveSource::State::add_counters(FrameInput& frame) const {
 LiveSource::LiveSource(const Scene& scene, const Animation& animation, const RenderOptions& options,
                        std::vector<int> frames, std::size_t first) {
   options.validate();
-  EL_CHECK(first <= frames.size(), "first frame {}: the list has {}", first, frames.size());
+  EL_CHECK(first <= frames.size(), "first frame {}: expected at most {}, the number of frames",
+           first, frames.size());
   for (const int frame : frames) {
-    EL_CHECK(frame > std::numeric_limits<int>::min(), "frame {}: no number before it", frame);
+    EL_CHECK(frame > std::numeric_limits<int>::min(),
+             "frame {}: expected a larger number, because no integer precedes it", frame);
   }
   const int any = frames.empty() ? 0 : frames.front();
   state_ = std::make_unique<State>(scene, animation, options, animation.state(any).poses.size());
@@ -204,9 +207,9 @@ bool LiveSource::resample(const Plane<std::uint8_t>& extra, FrameInput& frame,
                           std::span<Planes<3>* const> means) {
   State& s = *state_;
   EL_CHECK(s.position > 0 && frame.index == s.frames[s.position - 1],
-           "resample: frame {} is not the one that was delivered last", frame.index);
+           "resample: frame {} is not the last frame that next() delivered", frame.index);
   EL_CHECK(extra.extent() == s.options.extent && frame.extent() == s.options.extent,
-           "resample: {}x{} extra samples for {}x{} pixels", extra.width(), extra.height(),
+           "resample: extra samples have size {}x{}, expected {}x{}", extra.width(), extra.height(),
            s.options.extent.width, s.options.extent.height);
   EL_CHECK(means.size() == 1, "resample: {} layers of light, the source has 1", means.size());
   Planes<3>& mean = *means[0];
@@ -225,8 +228,8 @@ PictureStats LiveSource::picture(const AntialiasOptions& options, const Frame& f
                                  const Planes<3>& indirect, Planes<3>& out) {
   const State& s = *state_;
   EL_CHECK(s.position > 0 && frame.index == s.frames[s.position - 1],
-           "picture: frame {} is not the one that was delivered last", frame.index);
-  EL_CHECK(s.options.direct_spp > 0, "picture: no samples of direct light");
+           "picture: frame {} is not the last frame that next() delivered", frame.index);
+  EL_CHECK(s.options.direct_spp > 0, "picture: direct_spp is 0, expected at least 1");
   const World world{s.geometry, s.surfaces, s.lights};
   const GuideMap guides{frame, s.hits, indirect};
   return render_picture(
@@ -234,7 +237,7 @@ PictureStats LiveSource::picture(const AntialiasOptions& options, const Frame& f
 }
 
 void LiveSource::rewind_resampling() {
-  // Pixels without a surface draw none, whatever stands here.
+  // Pixels without a surface draw no samples, so their value does not matter.
   state_->drawn.fill(static_cast<std::uint32_t>(state_->options.spp));
 }
 

@@ -1,4 +1,4 @@
-// A FrameSource that renders.
+// A FrameSource that path-traces an animated scene.
 #pragma once
 
 #include <cstdint>
@@ -14,20 +14,22 @@ namespace eigenlight {
 struct RenderOptions {
   Extent extent{640, 360};
   int spp = 3;             ///< [1, 65536] samples of indirect light per pixel
-  int direct_spp = 8;      ///< [0, 65536] light samples of direct light; 0: `direct` is not wanted
+  int direct_spp = 8;      ///< [0, 65536] samples of direct light per pixel; 0 leaves it black
   int bounces = 3;         ///< [1, 64] bounces of indirect light after the first hit
-  std::uint32_t seed = 0;  ///< sequences of different seeds are independent
+  std::uint32_t seed = 0;  ///< different seeds give independent noise
 
   void validate() const;  ///< throws std::invalid_argument naming the field
 };
 
-/// Renders the given frames of an animated scene. Bits depend on scene, animation, options and
-/// frame number only: not on threads, nor on which frames were rendered before.
+/// Renders the given frames of an animated scene. The bits of a frame depend on scene, animation,
+/// options, frame number and the number of the frame before it only. They do not depend on the
+/// number of threads or on which frames were rendered before.
 class LiveSource final : public FrameSource {
  public:
-  /// `scene` and `animation` must outlive the source. Motion leads to the frame before in `frames`;
-  /// for the first, to its number minus one. `first` is the index in `frames` to start from
-  /// (resume).
+  /// `scene` and `animation` must outlive the source. Motion vectors lead to the previous entry of
+  /// `frames`; those of its first entry n lead to frame n - 1. Rendering starts at index `first` of
+  /// `frames`, so that an interrupted run can be resumed. Throws std::invalid_argument if an option
+  /// is out of range, `first` exceeds the size of `frames`, or a frame number has no predecessor.
   LiveSource(const Scene& scene, const Animation& animation, const RenderOptions& options,
              std::vector<int> frames, std::size_t first = 0);
   ~LiveSource() override;
@@ -36,15 +38,15 @@ class LiveSource final : public FrameSource {
   [[nodiscard]] bool resample(const Plane<std::uint8_t>& extra, FrameInput& frame,
                               std::span<Planes<3>* const> means) override;
 
-  /// The antialiased picture of the frame that next() delivered last, with `indirect` (filtered,
-  /// over albedo) in place of its own; render_picture(). Changes nothing of `frame`. Throws
-  /// std::invalid_argument if `frame` is another one, planes differ in size, the mode is kNone, or
-  /// direct_spp is 0.
+  /// Writes to `out` the antialiased picture of the last frame that next() delivered. `indirect`,
+  /// which is denoised and divided by albedo, replaces the indirect light of the frame; see
+  /// render_picture(). `frame` is not changed. Throws std::invalid_argument if `frame` is not the
+  /// last delivered one, planes differ in size, the mode is kNone, or direct_spp is 0.
   PictureStats picture(const AntialiasOptions& options, const Frame& frame,
                        const Planes<3>& indirect, Planes<3>& out);
 
-  /// Forgets the further samples that resample() drew for the frame that next() delivered last: the
-  /// next call draws the same ones again. So several methods can share one rendering.
+  /// Makes resample() draw the extra samples of the last delivered frame again from the first one.
+  /// Several methods can then share one rendering.
   void rewind_resampling();
 
  private:

@@ -1,4 +1,4 @@
-// The guide rays of a frame, as further eye rays see them.
+// Geometry and light of a frame's guide rays, for comparison with additional camera rays.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,12 @@
 
 namespace eigenlight {
 
-/// Geometry and light at the first hit of the ray through each pixel center. All of one extent, and
-/// must outlive this. Nothing here is changed by antialiasing: filters read it.
+/// Geometry and light at the first hit of the ray through each pixel center. All planes have one
+/// extent and must outlive this. Antialiasing only reads them.
 struct GuideMap {
   const Frame& frame;
   const Plane<GuideHit>& hits;
-  const Planes<3>& indirect;  ///< filtered, over albedo
+  const Planes<3>& indirect;  ///< denoised, divided by albedo
 
   [[nodiscard]] bool is_surface(int x, int y) const {
     return frame.extent().contains(x, y) && hits(x, y).kind == GuideHit::Kind::kSurface;
@@ -28,15 +28,15 @@ struct GuideMap {
   [[nodiscard]] glm::vec3 light(int x, int y) const {
     return load_pixel(frame.direct, x, y) + indirect_light(x, y);
   }
-  /// What the picture shows of the guide ray alone.
+  /// Radiance along the guide ray: albedo * light + emission.
   [[nodiscard]] glm::vec3 color(int x, int y) const {
     return load_pixel(frame.surface.albedo, x, y) * light(x, y) + load_pixel(frame.emission, x, y);
   }
 };
 
-/// A further eye ray that met a surface.
+/// Hit of an additional camera ray on a surface.
 struct EyePoint {
-  glm::vec2 pixel{0.0f};  ///< pixel coordinates
+  glm::vec2 pixel{0.0f};  ///< pixel coordinates; pixel centers are at + 0.5
   float depth = 0.0f;     ///< along the view axis, > 0
   glm::vec3 normal{0.0f};
 };

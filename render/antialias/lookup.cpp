@@ -14,7 +14,7 @@ struct Candidate {
   float image_distance2 = 0.0f;
 };
 
-// At most four, in row order.
+// At most four candidates in row order.
 struct Candidates {
   std::array<Candidate, 4> list;
   std::size_t count = 0;

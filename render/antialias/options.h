@@ -1,4 +1,4 @@
-// Which way of antialiasing, as a user names it.
+// Antialiasing modes and their names on the command line.
 #pragma once
 
 #include <string>
@@ -8,23 +8,23 @@ namespace eigenlight {
 
 enum class AntialiasMode {
   kNone,          ///< one ray through each pixel center
-  kLookup,        ///< Bauszat 2011, 3.2: further eye rays look indirect light up
-  kSraa,          ///< Chiu 2012: further geometry samples take all light from shaded neighbors
-  kSraaGeometry,  ///< the same without shadow samples: Chajdas 2011
-  kSupersample,   ///< everything is path-traced at each of several places of a pixel
+  kLookup,        ///< Bauszat 2011, 3.2: extra camera rays take indirect light from a guide ray
+  kSraa,          ///< Chiu 2012: extra camera rays take all light from similar guide rays
+  kSraaGeometry,  ///< Chajdas 2011: kSraa without shadow rays
+  kSupersample,   ///< all light is path-traced at several positions in each pixel
 };
 
 struct AntialiasOptions {
   AntialiasMode mode = AntialiasMode::kNone;
-  int samples = 1;  ///< per pixel, [2, kMaxSupersamples]; of kSupersample alone
+  int samples = 1;  ///< per pixel, [2, kMaxSupersamples]; only used by kSupersample
 };
 
 inline constexpr int kMaxSupersamples = 1024;
 
-/// `none`, `lookup`, `sraa`, `sraa-geometry` or `supersample:N`. Throws std::invalid_argument
-/// listing these, or naming the range of N.
+/// Parses `none`, `lookup`, `sraa`, `sraa-geometry` or `supersample:N`. Throws
+/// std::invalid_argument that lists these names or gives the range of N.
 [[nodiscard]] AntialiasOptions parse_antialias(std::string_view text);
-/// The text that parse_antialias() takes.
+/// The text that parse_antialias() turns into `options`.
 [[nodiscard]] std::string format_antialias(const AntialiasOptions& options);
 
 }  // namespace eigenlight

@@ -15,14 +15,15 @@
 namespace eigenlight {
 namespace {
 
-constexpr int kTileSide = 16;  // as LiveSource
+constexpr int kTileSide = 16;  // the same as in live_source.cpp
 
-// Of a pixel whose upper left corner is (0, 0). A square grid turned by atan(1/2): with its center,
-// which the guide ray takes, the five split rows and columns evenly.
+// Positions in a pixel whose upper left corner is (0, 0): a square grid turned by atan(1/2).
+// Together with the pixel center, which the guide ray takes, each of the five has a fifth of the
+// rows and of the columns.
 constexpr std::array<glm::vec2, 4> kRotatedGrid{
     {{0.1f, 0.7f}, {0.3f, 0.1f}, {0.7f, 0.9f}, {0.9f, 0.3f}}};
 
-// Sequences apart from those of the guide rays, which LiveSource draws from streams 0 and 1.
+// LiveSource draws its samples from streams 0 and 1.
 constexpr std::uint32_t kPlaceStream = 2;
 constexpr std::uint32_t kIndirectStream = 3;
 constexpr std::uint32_t kDirectStream = 4;
@@ -32,7 +33,7 @@ struct Tally {
   std::int64_t unmatched = 0;
 };
 
-// One pixel's eye rays.
+// The camera rays of one pixel.
 class PixelRays {
  public:
   PixelRays(const PictureInputs& in, const Plane<std::uint8_t>& lit, glm::ivec2 at, Tally& tally)
@@ -74,7 +75,7 @@ class PixelRays {
   [[nodiscard]] glm::vec3 looked_up();
   [[nodiscard]] glm::vec3 reconstructed(AntialiasMode mode);
   [[nodiscard]] glm::vec3 supersampled(int samples);
-  // `light_at(ray)` where the guide ray and those of the rotated grid meet surfaces.
+  // Mean color of the guide ray and the rotated grid; `light_at(ray)` gives the light at a surface.
   template <typename LightAt>
   [[nodiscard]] glm::vec3 mean_of_grid(const LightAt& light_at);
 
@@ -118,7 +119,7 @@ glm::vec3 PixelRays::mean_of_grid(const LightAt& light_at) {
 }
 
 glm::vec3 PixelRays::looked_up() {
-  // Four rays of a quarter: no more noise than the guide ray's own.
+  // Four rays with a quarter of the samples have at most the noise of the guide ray.
   const int samples = (in_.direct_spp + 3) / 4;
   return mean_of_grid([&](const EyeRay& ray) {
     const auto guide = most_similar_guide(in_.guides, {ray.pixel, ray.hit.depth, ray.hit.normal});
@@ -153,7 +154,7 @@ glm::vec3 PixelRays::supersampled(int samples) {
   return mean.value();
 }
 
-// PathTracer::lit_by() of all guide rays.
+// Stores PathTracer::lit_by() of all guide rays; returns the number of rays traced.
 std::int64_t judge_shadows(const PictureInputs& in, const TileGrid& grid,
                            Plane<std::uint8_t>& lit) {
   std::vector<std::int64_t> rays(static_cast<std::size_t>(grid.count()));
@@ -174,8 +175,9 @@ std::int64_t judge_shadows(const PictureInputs& in, const TileGrid& grid,
 void check(const AntialiasOptions& options, const GuideMap& guides) {
   const Extent extent = guides.frame.extent();
   EL_CHECK(guides.indirect[0].extent() == extent && guides.hits.extent() == extent,
-           "indirect light, guide rays and frame differ in size");
-  EL_CHECK(options.mode != AntialiasMode::kNone, "aa none: there is nothing to render");
+           "indirect light, guide rays and frame: expected one size");
+  EL_CHECK(options.mode != AntialiasMode::kNone,
+           "aa none: expected a mode that renders a picture of its own");
   const bool counts = options.mode == AntialiasMode::kSupersample;
   EL_CHECK(!counts || (options.samples >= 2 && options.samples <= kMaxSupersamples),
            "supersample: {} samples, expected 2 to {}", options.samples, kMaxSupersamples);

@@ -11,36 +11,35 @@ namespace eigenlight {
 
 struct PictureStats {
   std::int64_t rays = 0;
-  std::int64_t non_finite = 0;  ///< samples left out
-  std::int64_t unmatched = 0;   ///< eye rays that no guide ray could lend light to: path-traced
+  std::int64_t non_finite = 0;  ///< samples left out of the means
+  std::int64_t unmatched = 0;   ///< camera rays without a similar guide ray: path-traced
 };
 
-/// What a picture is made from.
+/// Inputs of render_picture().
 struct PictureInputs {
   const World& world;
   const PathTracer& tracer;
   const GuideMap& guides;
-  int spp = 1;         ///< samples of indirect light where it is path-traced, per eye ray
-  int direct_spp = 1;  ///< samples of direct light of a guide ray
+  int spp = 1;         ///< samples of indirect light per camera ray, where it is path-traced
+  int direct_spp = 1;  ///< samples of direct light that each guide ray had
   std::uint32_t seed = 0;
 };
 
-/// Renders the picture of a frame. Radiance, linear, not clamped: the mean over a pixel's eye rays
-/// of albedo * (direct + indirect) + emission at what they meet.
-///   kLookup       the guide ray and four of a rotated grid; direct light is path-traced at each,
-///                 with a quarter of direct_spp at the grid's; indirect light is that of
-///                 most_similar_guide()
-///   kSraa         the same rays; light is that of reconstruct_light()
-///   kSraaGeometry the same without shadow rays: light from both sides of a shadow's edge
-///   kSupersample  `samples` jittered rays, without the guide ray; spp and direct_spp at each, so
-///                 that the filtered indirect light takes no part
-/// Where the lookup or reconstruction finds nothing, that part of the light is path-traced there
-/// (`unmatched`). Lights and the sky keep the emission that the eye ray itself meets. Eye rays
-/// whose color is not finite are left out and counted; a pixel without any other is NaN.
+/// Renders the picture of a frame in linear radiance without clamping. A pixel is the mean of
+/// albedo * (direct + indirect) + emission over its camera rays:
+///   kLookup       the guide ray and four rays of a rotated grid. Grid rays path-trace direct light
+///                 with a quarter of direct_spp and take indirect light from most_similar_guide().
+///   kSraa         the same rays. Grid rays take all light from reconstruct_light().
+///   kSraaGeometry kSraa without shadow rays, so that light is mixed across shadow edges.
+///   kSupersample  `samples` jittered rays without the guide ray. Each path-traces spp and
+///                 direct_spp samples, so the denoised indirect light is not used.
+/// Where lookup or reconstruction finds no guide ray, the light is path-traced and `unmatched`
+/// counts the ray. Lamps and sky show the emission that the camera ray itself meets. Camera rays of
+/// non-finite color are left out of the mean and counted; a pixel without a finite ray is NaN.
 ///
-/// `out` gets the shape of the frame. Bits depend on the frame, the indirect light and the seed
-/// alone, not on threads. Throws std::invalid_argument on kNone, which has nothing to render, on a
-/// bad count of samples, or if planes differ in size.
+/// `out` gets the size of the frame. Bits depend on the frame, the indirect light and the seed, not
+/// on the number of threads. Throws std::invalid_argument on kNone, on a number of samples out of
+/// range, or if planes differ in size.
 PictureStats render_picture(const AntialiasOptions& options, const PictureInputs& in,
                             Planes<3>& out);
 

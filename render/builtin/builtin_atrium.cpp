@@ -9,10 +9,10 @@ namespace {
 
 using atrium::Stones;
 
-/// x of the columns along the court; the ones at the corners are piers.
+/// x of the columns along the court. Piers stand at the corners instead.
 float column_x(int i) { return -atrium::kCourtX + atrium::kBay * static_cast<float>(i); }
 
-/// Puts `mesh` into all bays around the court, facing it.
+/// Places `mesh` in all bays around the court, facing the court.
 void place_in_bays(Scene& scene, int mesh, float y) {
   for (int i = 0; i < atrium::kLongBays; ++i) {
     const float x = column_x(i) + 0.5f * atrium::kBay;
@@ -64,7 +64,7 @@ void add_arcades(Scene& scene, const Stones& stones) {
   }
 }
 
-/// Cloth in the court and behind the arches, in three colors.
+/// Adds cloth of three colors in the court and behind the arches.
 void add_banners(Scene& scene) {
   const std::array<Cloth, 3> cloths{{{{0.55f, 0.04f, 0.035f}, {0.75f, 0.52f, 0.14f}},
                                      {{0.05f, 0.32f, 0.10f}, {0.70f, 0.62f, 0.25f}},
@@ -76,8 +76,8 @@ void add_banners(Scene& scene) {
     banners[c] = add_mesh(scene, atrium::banner(material));
     curtains[c] = add_mesh(scene, atrium::curtain(material));
   }
-  // Banners hang before every second column, curtains in some arches; the camera leaves the court
-  // by an open one.
+  // Banners hang in front of every second column, and curtains in some arches. The camera leaves
+  // the court through an open arch.
   constexpr float kBannerZ = atrium::kCourtZ - 0.52f, kCurtainZ = atrium::kCourtZ + 0.42f;
   for (std::size_t i = 0; i < 4; ++i) {
     const float x = column_x(1 + 2 * static_cast<int>(i));
@@ -134,7 +134,8 @@ Scene make_atrium() {
   scene.lights.sky = {3.0f, 4.0f, 5.5f};
   scene.exposure = 0.45f;
   scene.fov_y = 50.0f;
-  // Along the court, around the fountain, through an open arch and back along the gallery.
+  // The path leads along the court, around the fountain, through an open arch, and back along the
+  // gallery.
   scene.camera_path = {{0.0f, {-9.4f, 1.7f, -0.4f}, {0.0f, 2.9f, 0.3f}},
                        {2.0f, {-5.6f, 1.8f, 0.3f}, {2.0f, 2.6f, -1.6f}},
                        {4.0f, {-1.6f, 2.0f, 1.45f}, {4.5f, 2.5f, -1.0f}},

@@ -102,7 +102,7 @@ Mesh curtain(int material) {
   builder.sheet(72, 32, [](float u, float v) {
     const float depth = 0.09f * (0.5f + 0.5f * v);
     const float z = depth * std::sin(52.0f * u + 0.8f * std::sin(3.0f * v));
-    // Gathered in the middle, as by a cord.
+    // The curtain is gathered in the middle as if tied by a cord.
     const float narrow = 1.0f - 0.16f * std::sin(glm::pi<float>() * v);
     return glm::vec3((u - 0.5f) * kWidth * narrow, kTop - kLength * v, z);
   });

@@ -1,4 +1,5 @@
-// Parts of the built-in scene `atrium`. Meters; y up; the court lies along x around the origin.
+// Parts of the built-in scene `atrium`. Units are meters and y points up. The court lies along x
+// around the origin.
 #pragma once
 
 #include "render/scene/mesh_builder.h"
@@ -7,29 +8,29 @@
 
 namespace eigenlight::atrium {
 
-inline constexpr float kBay = 2.75f;                      ///< from column to column
-inline constexpr int kLongBays = 8;                       ///< along x; there are two along z
-inline constexpr float kCourtX = 11.0f, kCourtZ = 2.75f;  ///< lines of the columns
+inline constexpr float kBay = 2.75f;                      ///< distance between columns
+inline constexpr int kLongBays = 8;                       ///< bays along x; there are two along z
+inline constexpr float kCourtX = 11.0f, kCourtZ = 2.75f;  ///< column lines, from the center
 inline constexpr float kWallX = 15.0f, kWallZ = 6.0f;     ///< inner faces of the outer walls
 inline constexpr float kVaseHeight = 0.62f;
 
-/// Heights above its floor at which arches spring and end.
+/// Height of a floor, and heights above that floor where arches spring and end.
 struct Storey {
   float floor, spring, top;
 };
 inline constexpr Storey kGround{0.0f, 3.0f, 5.0f}, kUpper{5.4f, 2.4f, 4.4f};
 
-/// Indices of materials.
+/// Material indices.
 struct Stones {
   int blocks, plaster, marble, court_floor, gallery_floor, wood, water;
 };
 [[nodiscard]] Stones add_stones(Scene& scene);
 
-/// Floors, outer walls, roof, beams and doors.
+/// Adds floors, outer walls, roof, beams and doors.
 void add_shell(Scene& scene, const Stones& stones);
 void add_fountain(Scene& scene, const Stones& stones);
 
-// Each stands at the origin, to be placed; arches and rails lie along x.
+// Each mesh stands at the origin; arches and rails lie along x.
 [[nodiscard]] Mesh column(const Storey& storey, int material);
 [[nodiscard]] Mesh pier(const Storey& storey, int material);
 [[nodiscard]] Mesh arch(const Storey& storey, int material);

@@ -6,11 +6,11 @@
 namespace eigenlight::atrium {
 namespace {
 
-constexpr float kEdge = 0.35f;                      ///< of slabs, beyond the column line
-constexpr float kRoof = kUpper.floor + kUpper.top;  ///< underside
+constexpr float kEdge = 0.35f;                      ///< overhang of slabs beyond the column line
+constexpr float kRoof = kUpper.floor + kUpper.top;  ///< height of the underside of the roof
 constexpr float kRoofTop = kRoof + 0.5f;
 
-/// Four boxes around the court: from `inset` before the column line out to `outset` beyond the
+/// Adds four boxes around the court, from `inset` inside the column line to `outset` beyond the
 /// inner faces of the walls.
 struct Ring {
   float low, high, inset, outset;
@@ -46,7 +46,7 @@ void add_walls(Scene& scene, const Stones& stones) {
   builder.box({kWallX, -0.3f, -kWallZ}, {kWallX + kThick, kRoof, kWallZ});
   place_once(scene, builder.take("outer walls", stones.blocks, 0.4f));
 
-  // A parapet that ends at 11 m.
+  // A parapet up to a height of 11 m.
   const float x = kCourtX - 0.25f, z = kCourtZ - 0.25f, high = 11.0f;
   builder.box({-x - 0.3f, kRoofTop, z}, {x + 0.3f, high, z + 0.3f});
   builder.box({-x - 0.3f, kRoofTop, -z - 0.3f}, {x + 0.3f, high, -z});
@@ -55,7 +55,7 @@ void add_walls(Scene& scene, const Stones& stones) {
   place_once(scene, builder.take("parapet", stones.blocks, 0.4f));
 }
 
-/// Beams under both ceilings of the long galleries, one for each column.
+/// Adds beams under both ceilings of the long galleries, one per column.
 void add_beams(Scene& scene, const Stones& stones) {
   MeshBuilder builder;
   for (int i = 0; i <= kLongBays; ++i) {
@@ -68,7 +68,7 @@ void add_beams(Scene& scene, const Stones& stones) {
   place_once(scene, builder.take("beams", stones.wood, 1.0f));
 }
 
-/// Wooden doors in stone frames, at every other bay of the long walls and on both storeys.
+/// Adds wooden doors in stone frames at every other bay of the long walls, on both storeys.
 void add_doors(Scene& scene, const Stones& stones) {
   MeshBuilder leaves, frames;
   for (int i = 0; i < kLongBays; i += 2) {

@@ -8,7 +8,7 @@ namespace {
 
 using Corners = std::array<glm::vec2, 4>;
 
-/// A block that stands on the floor: four corners (x, z) in order, and a height.
+/// A block on the floor: its four corners (x, z) in order, and its height.
 Mesh block(const std::string& name, const Corners& foot, float height, int material) {
   MeshBuilder builder;
   const auto at = [&](std::size_t i, float y) {
@@ -45,7 +45,7 @@ void add_walls(Scene& scene) {
   place_once(scene, block("tall block", tall, 3.30f, white));
 }
 
-/// Hangs so far below the ceiling that it can tilt.
+/// Adds the lamp, far enough below the ceiling to tilt.
 void add_lamp(Scene& scene) {
   scene.lights.rects.push_back(
       {{2.78f, 5.28f, 2.795f}, {0.65f, 0, 0}, {0, 0, 0.525f}, {17.0f, 12.0f, 4.0f}});
@@ -53,8 +53,8 @@ void add_lamp(Scene& scene) {
 
 }  // namespace
 
-/// The Cornell box in decimeters: room, blocks, lamp and colors after the data of Cornell's Program
-/// of Computer Graphics (1998), its spectra as RGB.
+/// The Cornell box in decimeters. Room, blocks, lamp and colors follow the data of the Cornell
+/// Program of Computer Graphics (1998), with spectra converted to RGB.
 Scene make_cornell() {
   Scene scene;
   scene.name = "cornell";
@@ -63,7 +63,8 @@ Scene make_cornell() {
   add_lamp(scene);
   scene.exposure = 1.6f;
   scene.fov_y = 45.0f;
-  // From the open front past the short block to a high corner, and down behind the tall block.
+  // The path leads from the open front past the short block to a high corner, and down behind the
+  // tall block.
   scene.camera_path = {{0.0f, {2.78f, 2.73f, -4.2f}, {2.78f, 2.6f, 2.8f}},
                        {1.5f, {1.9f, 3.0f, -0.6f}, {2.9f, 2.1f, 2.9f}},
                        {3.0f, {0.7f, 3.6f, 0.6f}, {3.3f, 1.3f, 3.2f}},

@@ -8,7 +8,8 @@
 namespace eigenlight {
 namespace {
 
-// Meters. The picture room lies around the origin; the red room behind the wall at kWallX.
+// Units are meters. The picture room lies around the origin, and the red room behind the wall at
+// kWallX.
 constexpr float kWallX = 8.0f, kWallZ = 4.0f, kHeight = 5.0f, kThick = 0.3f;
 constexpr float kRedX0 = kWallX + kThick, kRedX1 = 15.5f, kRedHeight = 4.2f;
 constexpr float kDoorZ0 = 0.6f, kDoorZ1 = 2.4f, kDoorHeight = 2.9f;
@@ -52,7 +53,7 @@ void add_floors(Scene& scene, const Materials& m) {
   place_once(scene, builder.take("carpet", m.carpet));
 }
 
-/// Outer walls, and the wall with the doorway: one face of it belongs to each room.
+/// Adds the outer walls and the wall with the doorway, which has one face in each room.
 void add_walls(Scene& scene, const Materials& m) {
   const auto divider = [](MeshBuilder& builder, float x0, float x1) {
     builder.box({x0, 0, -kWallZ}, {x1, kWellTop, kDoorZ0});
@@ -84,7 +85,7 @@ void add_walls(Scene& scene, const Materials& m) {
   place_once(scene, builder.take("woodwork", m.wood, 0.8f));
 }
 
-/// The ceiling with two wells, and a panel of light near the top of each.
+/// Adds the ceiling with two light wells and a light panel near the top of each.
 void add_skylights(Scene& scene, const Materials& m) {
   MeshBuilder builder;
   for (const float side : {-1.0f, 1.0f}) {
@@ -106,7 +107,8 @@ void add_skylights(Scene& scene, const Materials& m) {
   place_once(scene, builder.take("ceiling", m.ceiling));
 }
 
-/// A hanging tray that lights the ceiling of the red room; the room itself sees bounces only.
+/// Adds a hanging tray that lights the ceiling of the red room. The rest of the room receives
+/// indirect light only.
 void add_uplight(Scene& scene, const Materials& m) {
   constexpr float kX = 11.9f, kZ = 0.0f, kY = 3.1f, kHalf = 0.7f;
   MeshBuilder builder;
@@ -122,7 +124,7 @@ void add_uplight(Scene& scene, const Materials& m) {
   scene.lights.rects.push_back({{kX, kY, kZ}, {0, 0, kHalf}, {kHalf, 0, 0}, {30.0f, 19.0f, 9.0f}});
 }
 
-/// A frame and canvases of one size, all facing +z with their backs at z = 0.
+/// Mesh indices of a frame and of canvases of one size. All face +z, with their backs at z = 0.
 struct Pictures {
   int frame = 0;
   std::array<int, 10> canvases{};
@@ -148,7 +150,7 @@ Pictures add_pictures(Scene& scene, const Materials& m) {
   return pictures;
 }
 
-/// Where a picture hangs, and which way it faces: degrees about y from +z.
+/// Position of a picture, and the direction it faces in degrees about y from +z.
 struct Place {
   float x, z, degrees;
 };
@@ -237,7 +239,7 @@ Scene make_gallery() {
   hang_pictures(scene, materials);
   add_furniture(scene, materials);
   scene.fov_y = 50.0f;
-  // Past the partition to the doorway, into the red room, and a look back.
+  // The path leads past the partition and through the doorway into the red room, and looks back.
   scene.camera_path = {{0.0f, {-6.6f, 1.7f, 1.4f}, {0.0f, 1.8f, -1.0f}},
                        {2.0f, {-3.6f, 1.7f, 2.0f}, {2.0f, 1.6f, -0.4f}},
                        {4.0f, {-0.4f, 1.7f, 2.5f}, {6.0f, 1.6f, 0.6f}},

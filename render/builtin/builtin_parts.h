@@ -1,4 +1,4 @@
-// What the files of the built-in scenes share; see builtin_scenes.h for the scenes.
+// Helpers shared by the built-in scenes, which builtin_scenes.h lists.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -13,16 +13,16 @@ namespace eigenlight {
 [[nodiscard]] Scene make_atrium();
 [[nodiscard]] Scene make_gallery();
 
-/// Index of a new material of one linear color.
+/// Adds a material of one linear color and returns its index.
 [[nodiscard]] int add_material(Scene& scene, const std::string& name, const glm::vec3& color);
-/// Index of a new material that shows `texture`.
+/// Adds a material with a texture and returns its index.
 [[nodiscard]] int add_material(Scene& scene, Texture texture);
 
-/// Adds a mesh, to be placed by place(), and returns its index.
+/// Adds a mesh for place() and returns its index.
 [[nodiscard]] int add_mesh(Scene& scene, Mesh mesh);
-/// Places a mesh at `position`, turned by `degrees` about the y axis.
+/// Adds an instance of a mesh at `position`, turned by `degrees` about the y axis.
 void place(Scene& scene, int mesh, const glm::vec3& position, float degrees = 0.0f);
-/// Adds a mesh and places it once, where it was built.
+/// Adds a mesh and one instance of it with the identity transform.
 void place_once(Scene& scene, Mesh mesh);
 
 }  // namespace eigenlight

@@ -1,4 +1,4 @@
-// Scenes made by code: nothing to download, and the same bits everywhere.
+// Built-in scenes, made by code: no download, and the same bits on every machine.
 #pragma once
 
 #include <string_view>
@@ -10,14 +10,14 @@ namespace eigenlight {
 
 struct BuiltinScene {
   std::string_view name;
-  std::string_view what;  ///< one line
+  std::string_view what;  ///< description in one line
   Scene (*make)();
 };
 
-/// All built-in scenes, in the order they are listed.
+/// All built-in scenes in the order of listings.
 [[nodiscard]] const std::vector<BuiltinScene>& builtin_scenes();
 
-/// Throws std::invalid_argument listing the known names if `name` is none.
+/// Builds the scene called `name`. Throws std::invalid_argument with all names if it is unknown.
 [[nodiscard]] Scene make_builtin_scene(std::string_view name);
 
 }  // namespace eigenlight

@@ -1,4 +1,4 @@
-// Choosing one of many with given chances.
+// Discrete distribution over indices.
 #pragma once
 
 #include <cstddef>
@@ -13,28 +13,29 @@ namespace eigenlight {
   return glm::dot(color, glm::vec3(0.2126f, 0.7152f, 0.0722f));
 }
 
-/// Indices 0..n-1 with chances in proportion to weights, by inversion: neighbors in u are neighbors
-/// in index, so well-spread u stay well spread. Weights that are negative, NaN or Inf count as 0.
+/// Samples indices 0..n-1 with probabilities proportional to weights, by inversion of the
+/// cumulative sum, which keeps stratified numbers stratified. Weights that are negative, NaN or Inf
+/// count as 0.
 class Distribution {
  public:
   Distribution() = default;
   explicit Distribution(std::span<const float> weights);
 
-  /// Sum of the weights; 0: nothing can be chosen.
+  /// Sum of the weights; 0 if no index can be sampled.
   [[nodiscard]] double total() const { return total_; }
   [[nodiscard]] std::size_t size() const { return upper_.size(); }
 
   struct Choice {
     std::size_t index = 0;
     float chance = 0.0f;
-    float remainder = 0.0f;  ///< u, stretched over the chosen index: uniform in [0, 1) again
+    float remainder = 0.0f;  ///< position of u within the index; uniform in [0, 1)
   };
   /// `u` in [0, 1). Requires total() > 0.
   [[nodiscard]] Choice sample(float u) const;
   [[nodiscard]] float chance(std::size_t index) const;
 
  private:
-  std::vector<float> upper_;  // running sums over the total; the last one with a weight is 1
+  std::vector<float> upper_;  // cumulative sums divided by the total; 1 from the last weight on
   double total_ = 0.0;
 };
 

@@ -58,7 +58,7 @@ void EmitterTable::bound() {
 
 EmitterTable::Sample EmitterTable::sample(float pick, const glm::vec2& u) const {
   const Triangle& t = triangles_[distribution_.sample(pick).index];
-  const float root = std::sqrt(u.x);  // uniform over the triangle (Turk, Graphics Gems I)
+  const float root = std::sqrt(u.x);  // uniform in the triangle (Turk, Graphics Gems I)
   const glm::vec3 position = t.corner + root * (1.0f - u.y) * t.edge_u + root * u.y * t.edge_v;
   return {position, glm::normalize(glm::cross(t.edge_u, t.edge_v)), emission_of_[t.instance],
           pdf_of_[t.instance]};

@@ -1,4 +1,4 @@
-// Emissive triangles as one light.
+// All emissive triangles of a scene as one light.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -10,30 +10,31 @@
 
 namespace eigenlight {
 
-/// All triangles whose material emits, chosen in proportion to area * luminance(emission). Left out
-/// are thin glass, which no ray meets, and materials with holes, which only bounce rays find.
+/// Samples points on triangles whose material emits, with probability proportional to area *
+/// luminance(emission). Leaves out thin glass, which no ray meets, and materials with holes, which
+/// only cosine-distributed rays find.
 class EmitterTable {
  public:
   EmitterTable() = default;
-  /// Triangles in world space at the current poses of `geometry`.
+  /// Takes the triangles in world space at the current poses of `geometry`.
   EmitterTable(const Scene& scene, const EmbreeScene& geometry);
 
   [[nodiscard]] bool empty() const { return triangles_.empty(); }
   /// Sum of area * luminance(emission).
   [[nodiscard]] float power() const { return static_cast<float>(distribution_.total()); }
-  /// A sphere around all of them.
+  /// Sphere around all triangles.
   [[nodiscard]] const glm::vec3& center() const { return center_; }
   [[nodiscard]] float radius() const { return radius_; }
 
   struct Sample {
     glm::vec3 position{0.0f};
-    glm::vec3 normal{0.0f};  ///< unit, of either side
+    glm::vec3 normal{0.0f};  ///< unit normal; may face either side
     glm::vec3 emission{0.0f};
-    float pdf = 0.0f;  ///< per area
+    float pdf = 0.0f;  ///< per unit of area
   };
-  /// `pick` chooses the triangle, `u` the point on it. Requires !empty().
+  /// `pick` in [0, 1) selects the triangle and `u` in [0, 1)^2 the point. Requires !empty().
   [[nodiscard]] Sample sample(float pick, const glm::vec2& u) const;
-  /// Density per area with which sample() yields a point of a triangle of this instance.
+  /// Density per unit of area with which sample() returns a point on a triangle of the instance.
   [[nodiscard]] float pdf(std::uint32_t instance) const { return pdf_of_[instance]; }
 
  private:
@@ -46,7 +47,7 @@ class EmitterTable {
 
   std::vector<Triangle> triangles_;
   Distribution distribution_;
-  std::vector<glm::vec3> emission_of_;  // per instance; 0: not in the table
+  std::vector<glm::vec3> emission_of_;  // per instance; 0 if not in the table
   std::vector<float> pdf_of_;           // per instance
   glm::vec3 center_{0.0f};
   float radius_ = 0.0f;

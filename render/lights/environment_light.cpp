@@ -55,8 +55,8 @@ glm::vec3 EnvironmentLight::radiance(const glm::vec3& direction) const {
                   glm::mix(texel(x0, y1), texel(x1, y1), f.x), f.y);
 }
 
-// Chance of a texel to density over directions: the texel at row coordinate y has the solid angle
-// 2 pi^2 sin(theta) / pixels.
+// Density per steradian from the probability of a texel. At row coordinate y a texel has a solid
+// angle of 2 pi^2 sin(theta) / pixels.
 float EnvironmentLight::texel_pdf(float chance, float y) const {
   const float sine = std::sin(kPi * y / static_cast<float>(extent_.height));
   if (!(sine > 0.0f)) return 0.0f;

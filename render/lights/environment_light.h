@@ -1,4 +1,4 @@
-// Light from an equirectangular image around the scene.
+// Light from an equirectangular image around the scene (environment map).
 #pragma once
 
 #include <glm/glm.hpp>
@@ -9,16 +9,18 @@
 
 namespace eigenlight {
 
-/// Directions as Environment maps them. Choosing follows luminance * sin(theta) per texel.
+/// Radiance and importance sampling of an Environment, which defines the mapping of directions.
+/// Texels are sampled with probability proportional to luminance * sin(theta).
 class EnvironmentLight {
  public:
-  /// Keeps a copy of what it needs. No environment: black.
+  /// Copies the image. Without an environment the light is black.
   explicit EnvironmentLight(const std::optional<Environment>& environment);
 
   [[nodiscard]] bool is_black() const { return !(rows_.total() > 0.0); }
-  /// Bilinear; wraps around the horizon, clamps at the poles. `direction` is unit.
+  /// Bilinear radiance from the unit vector `direction`. Wraps around the horizon and clamps at the
+  /// poles.
   [[nodiscard]] glm::vec3 radiance(const glm::vec3& direction) const;
-  /// Luminance of the radiance summed over all directions.
+  /// Luminance integrated over all directions.
   [[nodiscard]] float power() const { return power_; }
 
   struct Sample {

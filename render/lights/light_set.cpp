@@ -14,12 +14,12 @@ constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kBelowOne = 0x1.fffffep-1f;
 
-// Chooses one of several weights as they pass by; `u` is stretched and used again.
+// Selects one of several weights that arrive one by one, and keeps the rest of `u` for reuse.
 class Picker {
  public:
   Picker(float u, float total) : u_(u * total), total_(total) {}
 
-  /// True for exactly one of the weights that add up to the total.
+  /// Returns true for exactly one of the weights that add up to the total.
   [[nodiscard]] bool take(float weight) {
     if (!(weight > 0.0f)) return false;
     last_ = weight;
@@ -57,26 +57,26 @@ void LightSet::update(const Lights& lights) {
   disks_.clear();
   for (const SunLight& sun : lights.suns) {
     const float sine = std::sin(0.5f * half_angle(sun));
-    // Without losing digits.
+    // 1 - cos a = 2 sin^2(a/2) keeps its digits for small angles.
     disks_.push_back({std::sin(half_angle(sun)), 2.0f * sine * sine});
   }
   const auto poses = geometry_->transforms();
   if (std::equal(poses.begin(), poses.end(), emitter_poses_.begin(), emitter_poses_.end())) return;
-  // The order of the table follows the scene, so that poses alone decide what is chosen.
+  // The order of the table follows the scene, so that samples depend on the poses only.
   if (emitter_poses_.empty() || !emitters_.empty()) emitters_ = EmitterTable(*scene_, *geometry_);
   emitter_poses_.assign(poses.begin(), poses.end());
 }
 
 float LightSet::sun_estimate(std::size_t index, const glm::vec3& normal) const {
   const SunLight& sun = lights_.suns[index];
-  // A disk may reach over the horizon where its center does not.
+  // The disk can reach above the horizon while its center is below.
   const float cosine = glm::dot(sun.to_light, normal) + disks_[index].sine;
   return luminance(sun.irradiance) * std::max(cosine, 0.0f);
 }
 
 float LightSet::environment_estimate() const {
   if (environment_.is_black()) return 0.0f;
-  // Mean irradiance over all normals: a quarter of the radiance summed over directions.
+  // The mean irradiance over all normals is a quarter of the integral of radiance over directions.
   return 0.25f * environment_.power() * lights_.environment_scale;
 }
 
@@ -118,8 +118,8 @@ std::optional<LightSample> LightSet::sample_sun(const glm::vec3& normal, const g
     const SunLight& sun = lights_.suns[i];
     const float rise = disks_[i].rise;
     const glm::vec3 direction = sample_cone(sun.to_light, rise, {picker.remainder(), u.y});
-    // The disk's irradiance is radiance * pi sin^2 a and its density 1 / (2 pi (1 - cos a)), so
-    // that radiance over density is irradiance * 2 / (1 + cos a): also right for a sun of no size.
+    // Irradiance of the disk is radiance * pi sin^2 a, and its density is 1 / (2 pi (1 - cos a)).
+    // Hence radiance / density = irradiance * 2 / (1 + cos a), which also holds for a = 0.
     const float value = 2.0f / (2.0f - rise) / picker.chance();
     return LightSample{direction, kInfinity, sun.irradiance * value, kInfinity};
   }
@@ -159,7 +159,7 @@ std::optional<LightSample> LightSet::sample_local(const glm::vec3& from, float p
   if (!(total > 0.0f)) return std::nullopt;
   Picker picker(pick, total);
   std::optional<LightSample> sample;
-  const auto choose = [&] {  // in the order of local_total()
+  const auto choose = [&] {  // the same order as in local_total()
     if (picker.take(environment_estimate())) return sample_environment(u);
     if (picker.take(emitters_estimate(from))) return sample_emitters(from, picker.remainder(), u);
     for (const AreaRect& rect : lights_.rects) {
@@ -168,7 +168,7 @@ std::optional<LightSample> LightSet::sample_local(const glm::vec3& from, float p
     for (const SphereLight& sphere : lights_.spheres) {
       if (picker.take(estimate_irradiance(sphere, from))) return sample_one(sphere, from, u);
     }
-    return std::optional<LightSample>();  // rounding: u at the very end of the total
+    return std::optional<LightSample>();  // rounding: the weights add up to slightly less
   };
   sample = choose();
   divide(sample, picker.chance());

@@ -15,8 +15,8 @@ float rect_area(const AreaRect& rect) {
   return 4.0f * glm::length(glm::cross(rect.half_u, rect.half_v));
 }
 
-// 1 - cosine of the half angle of the cone that the sphere fills; negative from within.
-// 1 - sqrt(1 - s) as s / (1 + sqrt(1 - s)), which keeps its digits for far spheres.
+// 1 - cosine of the half angle of the cone that the sphere covers; negative from inside. It is
+// 1 - sqrt(1 - s), written as s / (1 + sqrt(1 - s)) to keep its digits for distant spheres.
 float cone_rise(const SphereLight& sphere, const glm::vec3& from) {
   const glm::vec3 to_center = sphere.center - from;
   const float sine2 = sphere.radius * sphere.radius / glm::dot(to_center, to_center);
@@ -48,7 +48,7 @@ std::optional<float> intersect(const AreaRect& rect, const Ray& ray) {
   const float t = glm::dot(normal, rect.center - ray.origin) / facing;
   if (!(t > ray.t_min && t < ray.t_max)) return std::nullopt;
   const glm::vec3 p = ray.origin + t * ray.direction - rect.center;
-  // Coordinates along two sides that need not be at a right angle.
+  // Coordinates along the two sides, which need not be perpendicular.
   const float area2 = glm::dot(normal, normal);
   const float a = glm::dot(glm::cross(p, rect.half_v), normal) / area2;
   const float b = glm::dot(glm::cross(rect.half_u, p), normal) / area2;
@@ -59,8 +59,8 @@ std::optional<float> intersect(const AreaRect& rect, const Ray& ray) {
 std::optional<float> intersect(const SphereLight& sphere, const Ray& ray) {
   const glm::vec3 to_center = sphere.center - ray.origin;
   const float along = glm::dot(to_center, ray.direction);
-  // Distance of the center from the line: stable for far spheres (Haines et al., Ray Tracing Gems,
-  // ch. 7).
+  // Vector from the line to the center: stable for distant spheres (Haines et al., Ray Tracing
+  // Gems, ch. 7).
   const glm::vec3 off = to_center - along * ray.direction;
   const float chord2 = sphere.radius * sphere.radius - glm::dot(off, off);
   if (!(chord2 > 0.0f)) return std::nullopt;
@@ -91,7 +91,7 @@ ShapeSample sample_shape(const SphereLight& sphere, const glm::vec3& from, const
   if (!(rise > 0.0f)) return {};
   const glm::vec3 direction = sample_cone(glm::normalize(sphere.center - from), rise, u);
   const std::optional<float> t = intersect(sphere, Ray{from, direction});
-  // At the very rim rounding may miss the sphere: the nearest point of the ray stands in.
+  // At the rim the ray may miss the sphere by rounding; the closest point of the ray is used then.
   const float distance = t ? *t : glm::dot(sphere.center - from, direction);
   return {direction, distance, 1.0f / (2.0f * kPi * rise)};
 }
@@ -111,13 +111,13 @@ float shape_pdf(const SphereLight& sphere, const glm::vec3& from) {
 float estimate_irradiance(const AreaRect& rect, const glm::vec3& from) {
   const glm::vec3 to_point = from - rect.center;
   const glm::vec3 normal = glm::cross(rect.half_u, rect.half_v);
-  const float height = glm::dot(to_point, normal);  // times area / 4
+  const float height = glm::dot(to_point, normal);  // height above the plane * area / 4
   if (!(height > 0.0f)) return 0.0f;
   const float distance2 = glm::dot(to_point, to_point);
   const float cosine = height / std::sqrt(distance2 * glm::dot(normal, normal));
   const float area = rect_area(rect);
-  // A tenth of the light whatever the angle: seen from near the plane, parts of a large rectangle
-  // are much less oblique than its center.
+  // A tenth of the estimate ignores the angle: near the plane of a large rectangle, some of its
+  // parts are seen much less obliquely than its center.
   return luminance(rect.radiance) * area * (0.1f + 0.9f * cosine) / (distance2 + area);
 }
 

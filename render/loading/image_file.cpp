@@ -21,7 +21,7 @@ using InputPtr = std::unique_ptr<OIIO::ImageInput>;
   throw std::runtime_error(fmt::format("{}: cannot read image: {}", name, why));
 }
 
-/// All channels of the first part, converted to `T`, top row first.
+/// Reads all channels of the first part, converted to `T`, with the top row first.
 template <typename T>
 std::vector<T> read_pixels(OIIO::ImageInput& input, OIIO::TypeDesc type, const std::string& name) {
   const OIIO::ImageSpec& spec = input.spec();
@@ -54,7 +54,7 @@ Texture to_texture(OIIO::ImageInput& input, const std::string& name) {
   return texture;
 }
 
-/// Holes are cut by alpha alone: color must not be multiplied by it.
+/// Configuration that keeps color from being multiplied by alpha, which only cuts holes here.
 OIIO::ImageSpec unassociated() {
   OIIO::ImageSpec config;
   config["oiio:UnassociatedAlpha"] = 1;
@@ -75,7 +75,7 @@ Texture read_texture(std::span<const std::uint8_t> bytes, const std::string& nam
   const FloatTrapsOff threads_of_openimageio_start_here;
   OIIO::ImageSpec config = unassociated();
   OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(bytes.data()), bytes.size());
-  // OpenImageIO 2.4 loses the proxy that open() is given beside a configuration.
+  // OpenImageIO 2.4 ignores the proxy argument of open() if there is a configuration.
   OIIO::Filesystem::IOProxy* proxy = &memory;
   config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
   const InputPtr input = OIIO::ImageInput::open(name, &config);

@@ -16,7 +16,8 @@
 namespace eigenlight {
 namespace {
 
-/// Materials of that name; never empty. `field` is the place in scene.json that names it.
+/// Returns all materials called `name`. Throws if there is none; `field` is the place in
+/// scene.json.
 std::vector<Material*> find_materials(Scene& scene, const std::string& name,
                                       const std::string& field) {
   std::vector<Material*> found;
@@ -29,14 +30,16 @@ std::vector<Material*> find_materials(Scene& scene, const std::string& name,
   return found;
 }
 
-/// Radiances come from scene.json alone: assimp reads colors of emission, but not their strength.
+/// Takes radiances from scene.json only, because assimp reads the color of emission but not its
+/// strength.
 void apply_emission(const SceneDescription& description, const std::string& file, Scene& scene,
                     std::vector<std::string>& notes) {
   for (Material& material : scene.materials) {
     const bool listed = description.emissive_materials.contains(material.name);
     if (material.emission != glm::vec3(0.0f) && !listed) {
-      notes.push_back(fmt::format("material \"{}\" emits in the model, but {} gives it no light",
-                                  material.name, file));
+      notes.push_back(fmt::format(
+          "material \"{}\" emits in the model, but stays dark: {} lists no radiance for it",
+          material.name, file));
     }
     material.emission = glm::vec3(0.0f);
   }
@@ -97,7 +100,7 @@ Sphere bounds(const Scene& scene) {
   return {(lower + upper) * 0.5f, distance(lower, upper) * 0.5f};
 }
 
-/// A third of a turn around the model in 8 seconds, from 15 degrees above.
+/// Adds a camera path: a third of a turn around the model in 8 seconds, from 15 degrees above.
 void add_orbit(Scene& scene) {
   const Sphere sphere = bounds(scene);
   const float distance = 1.05f * sphere.radius / std::sin(glm::radians(scene.fov_y) * 0.5f);
@@ -121,11 +124,11 @@ Scene load_bare(const std::filesystem::path& path, const SceneFileOptions& optio
   scene.name = scene.title = path.stem().string();
   load_model(path, scene, notes);
   add_orbit(scene);
-  // A white surface that faces this sun shows about 1 at exposure 1.
+  // A white surface that faces this sun has a brightness of about 1 at exposure 1.
   scene.lights.suns.push_back({glm::normalize(glm::vec3(0.4f, 1.0f, 0.5f)), {3.0f, 2.8f, 2.5f}});
   scene.lights.sky = {0.4f, 0.5f, 0.65f};
   notes.push_back(
-      fmt::format("{}: a bare model: orbit camera, sun and sky were added", short_name(path)));
+      fmt::format("{}: bare model: added an orbit camera, a sun and a sky", short_name(path)));
   return scene;
 }
 

@@ -15,28 +15,28 @@ namespace {
 
 using nlohmann::json;
 
-/// Closed range of numbers, and how a message words it.
+/// Closed range of numbers, and its description in error messages.
 struct Range {
   float low, high;
   const char* expected;
 
-  /// Whether the number is in the range, and still is as a float.
+  /// Whether `number` is in the range and does not overflow as a float.
   [[nodiscard]] bool holds(double number) const {
     return std::abs(number) <= std::numeric_limits<float>::max() &&
            number >= static_cast<double>(low) && number <= static_cast<double>(high);
   }
 };
-// Places and lengths: their squares, and the squares of their products, stay within float.
+// Positions and lengths: their squares and the squares of their products fit into a float.
 constexpr float kFar = 1e9f;
 constexpr Range kCoordinate{-kFar, kFar, "a number in [-1e9, 1e9]"};
 constexpr Range kLength{1e-9f, kFar, "a number in [1e-9, 1e9]"};
-// Light that float can square, as the denoiser has it (kLargestLight), a thousand of them summed.
+// Light: a thousand such values add up to less than kLargestLight, which the denoiser can square.
 constexpr Range kLight{0.0f, 1e15f, "a number in [0, 1e15]"};
 constexpr Range kExposure{1e-9f, kFar, "a number in [1e-9, 1e9]"};
-// Eleven days: the last frame stays within the frames that a run may name.
+// Eleven days, so that the last frame number fits into the range of frame numbers.
 constexpr Range kSeconds{-1e6f, 1e6f, "seconds in [-1e6, 1e6]"};
 
-/// A value of the file that knows its own path, for messages.
+/// A JSON value with its file and path for error messages.
 class Field {
  public:
   Field(const json& value, std::string file, std::string path)
@@ -88,9 +88,9 @@ class Field {
     }
     return v;
   }
-  /// A vector that is not zero, made unit.
+  /// A unit vector from a vector of any length but 0.
   [[nodiscard]] glm::vec3 direction() const {
-    // In double, where no square of a float underflows.
+    // The square of a small float underflows in float, but not in double.
     const glm::dvec3 v(vec3());
     if (v == glm::dvec3(0.0)) fail("expected a direction, got 0, 0, 0");
     return glm::vec3(normalize(v));
@@ -107,16 +107,16 @@ void read_camera(const Field& camera, SceneDescription& scene) {
   const Field keyframes = camera["keyframes"];
   for (const Field& item : keyframes.items()) {
     const CameraKey key{item["t"].number(kSeconds), item["eye"].vec3(), item["look_at"].vec3()};
-    // Squares of shorter ways have lost digits, or are 0.
+    // The squares of shorter distances lose digits or underflow to 0.
     if (distance(key.eye, key.look_at) < 1e-15f) {
       item["look_at"].fail("expected a point other than eye");
     }
     if (!scene.camera_path.empty() && !(key.seconds > scene.camera_path.back().seconds)) {
-      item["t"].fail("expected seconds after those of the key before");
+      item["t"].fail("expected more seconds than in the previous keyframe");
     }
     scene.camera_path.push_back(key);
   }
-  if (scene.camera_path.empty()) keyframes.fail("expected at least one key");
+  if (scene.camera_path.empty()) keyframes.fail("expected at least one keyframe");
 }
 
 void read_sun(const Field& light, Lights& lights) {
@@ -152,7 +152,7 @@ void read_light(const Field& light, SceneDescription& scene) {
   } else if (type == "emissive_material") {
     scene.emissive_materials[light["material"].text()] = light["radiance"].vec3(kLight);
   } else {
-    // As JSON has it: a line break in the text must not break the message.
+    // Printed as JSON, so that a line break in the text does not break the message.
     light["type"].fail(
         fmt::format("unknown light {}, expected sun, sky, area_rect, sphere or emissive_material",
                     json(type).dump()));
@@ -170,7 +170,7 @@ json parse_file(const std::filesystem::path& path) {
         fmt::format("{}: broken JSON at byte {}", short_name(path), error.byte));
   } catch (const json::out_of_range&) {
     throw std::runtime_error(
-        fmt::format("{}: broken JSON: a number that double does not hold", short_name(path)));
+        fmt::format("{}: broken JSON: a number exceeds the range of double", short_name(path)));
   }
 }
 

@@ -18,8 +18,8 @@
 namespace eigenlight {
 namespace {
 
-/// Where normals are missing, edges sharper than this many degrees stay sharp: boxes keep their
-/// edges, scans are smooth. Taste.
+/// Degrees. Where a model has no normals, sharper edges stay sharp: boxes keep their edges, and
+/// scans become smooth. Chosen by eye.
 constexpr float kSmoothingAngle = 40.0f;
 
 glm::vec3 to_vec3(const aiVector3D& v) { return {v.x, v.y, v.z}; }
@@ -33,7 +33,7 @@ glm::mat4 to_mat4(const aiMatrix4x4& m) {
           m.a3, m.b3, m.c3, m.d3, m.a4, m.b4, m.c4, m.d4};
 }
 
-/// Triangles with finite corners; lines, points and the rest are dropped.
+/// Reads the triangles with finite corners; drops all other triangles, lines and points.
 void read_triangles(const aiMesh& from, Mesh& mesh, std::vector<std::string>& notes) {
   std::size_t broken = 0;
   for (unsigned i = 0; i < from.mNumFaces; ++i) {
@@ -51,7 +51,7 @@ void read_triangles(const aiMesh& from, Mesh& mesh, std::vector<std::string>& no
   }
   if (broken > 0) {
     notes.push_back(fmt::format(
-        "mesh \"{}\": {} triangles with NaN, Inf or missing vertices dropped", mesh.name, broken));
+        "mesh \"{}\": dropped {} triangles with NaN, Inf or missing vertices", mesh.name, broken));
   }
 }
 
@@ -60,7 +60,7 @@ glm::vec3 area_normal(const Mesh& mesh, const glm::uvec3& t) {
   return cross(mesh.positions[t.y] - a, mesh.positions[t.z] - a);
 }
 
-/// Normals that are NaN or zero become those of a triangle that uses them.
+/// Replaces vertex normals that are zero or NaN by the normal of a triangle that uses the vertex.
 void mend_normals(Mesh& mesh) {
   for (const glm::uvec3& t : mesh.triangles) {
     const glm::vec3 flat = area_normal(mesh, t);
@@ -88,7 +88,7 @@ Mesh read_mesh(const aiMesh& from, unsigned uv_channel, std::vector<std::string>
   }
   if (from.HasTextureCoords(uv_channel)) {
     for (unsigned i = 0; i < from.mNumVertices; ++i) {
-      // assimp has v = 0 at the bottom for every format; here it is at the top.
+      // assimp puts v = 0 at the bottom for every format; Texture has it at the top.
       const glm::vec2 uv(from.mTextureCoords[uv_channel][i].x,
                          1.0f - from.mTextureCoords[uv_channel][i].y);
       mesh.texcoords.push_back(std::isfinite(uv.x) && std::isfinite(uv.y) ? uv : glm::vec2(0.0f));
@@ -97,7 +97,8 @@ Mesh read_mesh(const aiMesh& from, unsigned uv_channel, std::vector<std::string>
   return mesh;
 }
 
-/// Triangles without area are kept, as no ray meets them; a mesh that is a single point is nothing.
+/// Whether any triangle is more than a single point. Other triangles without area do no harm,
+/// because no ray meets them.
 bool has_extent(const Mesh& mesh) {
   return std::any_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const glm::uvec3& t) {
     const glm::vec3& a = mesh.positions[t.x];
@@ -105,7 +106,8 @@ bool has_extent(const Mesh& mesh) {
   });
 }
 
-/// One instance for each mesh of each node; `mesh_index` maps assimp's meshes to ours, or to -1.
+/// Adds one instance for each mesh of each node. `mesh_index` maps the meshes of assimp to those of
+/// the scene; dropped meshes have -1.
 void read_nodes(const aiNode& node, const aiMatrix4x4& parent, const std::vector<int>& mesh_index,
                 Scene& scene) {
   const aiMatrix4x4 to_world = parent * node.mTransformation;
@@ -118,7 +120,7 @@ void read_nodes(const aiNode& node, const aiMatrix4x4& parent, const std::vector
   }
 }
 
-/// Null where assimp cannot read it.
+/// Returns null if assimp cannot read the file.
 const aiScene* read_file(const std::filesystem::path& path, Assimp::Importer& importer) {
   const FloatTrapsOff models_may_hold_nan;
   importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, kSmoothingAngle);
@@ -148,7 +150,7 @@ void load_model(const std::filesystem::path& path, Scene& scene, std::vector<std
     Mesh mesh = read_mesh(*model->mMeshes[i], uv_channels[material], notes);
     if (!has_extent(mesh)) {
       notes.push_back(
-          fmt::format("mesh \"{}\": no triangle that is more than a point, dropped", mesh.name));
+          fmt::format("mesh \"{}\": dropped, because all its triangles are points", mesh.name));
       continue;
     }
     mesh.material = first_material + static_cast<int>(material);

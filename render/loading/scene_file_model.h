@@ -1,4 +1,5 @@
-// Model files (glTF, OBJ) through assimp. scene_file*.cpp are the only files that include assimp.
+// Reads model files (glTF, OBJ) with assimp. scene_file*.cpp are the only files that include
+// assimp.
 #pragma once
 
 #include <filesystem>
@@ -9,10 +10,10 @@
 
 namespace eigenlight {
 
-/// Appends the meshes, instances, materials and textures of a model to `scene`, in the model's own
-/// coordinates; emission is what the model says. Adds to Scene::missing_textures and `notes` what
-/// load_scene() promises. Throws std::runtime_error naming the file if it cannot be read or holds
-/// no triangle.
+/// Appends the meshes, instances, materials and textures of a model to `scene`. Coordinates and
+/// emission are those of the model. Updates Scene::missing_textures and `notes` as load_scene()
+/// describes. Throws std::runtime_error with the file name if the file cannot be read or has no
+/// triangle.
 void load_model(const std::filesystem::path& path, Scene& scene, std::vector<std::string>& notes);
 
 }  // namespace eigenlight

@@ -16,17 +16,17 @@
 namespace eigenlight {
 namespace {
 
-/// Linear stand-in for an image that cannot be read.
+/// Linear gray that replaces an image that cannot be read.
 constexpr float kMissingGrey = 0.5f;
 
-/// An image as a model names it; the same name is the same image.
+/// An image of a model, identified by its name.
 struct ImageRead {
   std::string name;
   std::optional<Texture> texture;
   std::string error;
 };
 
-/// Name of the base color image, or empty.
+/// Returns the name of the base color image; empty if there is none.
 std::string base_color_image(const aiMaterial& material, unsigned& uv_channel) {
   for (const aiTextureType type : {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE}) {
     aiString name;
@@ -37,10 +37,10 @@ std::string base_color_image(const aiMaterial& material, unsigned& uv_channel) {
   return {};
 }
 
-/// Texels whose alpha is under this are holes.
+/// Returns the alpha below which texels are holes.
 float alpha_cutoff(const aiMaterial& material) {
   aiString mode;
-  float cutoff = 0.5f;  // glTF 2.0, 3.9.4: the default
+  float cutoff = 0.5f;  // default of glTF 2.0, 3.9.4
   if (material.Get(AI_MATKEY_GLTF_ALPHAMODE, mode) == aiReturn_SUCCESS) {
     if (std::string(mode.C_Str()) == "OPAQUE") return 0.0f;
     material.Get(AI_MATKEY_GLTF_ALPHACUTOFF, cutoff);
@@ -63,7 +63,7 @@ Material read_material(const aiMaterial& from) {
 }
 
 Texture read_embedded(const aiTexture& image, const std::string& name) {
-  if (image.mHeight == 0) {  // the bytes of an image file, mWidth of them
+  if (image.mHeight == 0) {  // pcData holds mWidth bytes of an image file
     const auto* bytes = reinterpret_cast<const std::uint8_t*>(image.pcData);
     return read_texture({bytes, image.mWidth},
                         fmt::format("embedded {}.{}", name, image.achFormatHint));
@@ -82,7 +82,7 @@ void read_image(const ModelFile& file, ImageRead& image) {
     if (embedded != nullptr) {
       image.texture = read_embedded(*embedded, image.name);
     } else {
-      std::string relative = image.name;  // MTL files of other systems have backslashes
+      std::string relative = image.name;  // MTL files from Windows have backslashes
       std::replace(relative.begin(), relative.end(), '\\', '/');
       image.texture = read_texture(file.path.parent_path() / relative);
     }
@@ -126,7 +126,7 @@ std::vector<unsigned> read_materials(const ModelFile& file, Scene& scene,
       scene.textures.push_back(std::move(*images[i].texture));
     } else {
       ++scene.missing_textures;
-      notes.push_back(fmt::format("{}; grey is used", images[i].error));
+      notes.push_back(fmt::format("{}; gray replaces it", images[i].error));
     }
   }
   for (unsigned i = 0; i < file.model.mNumMaterials; ++i) {

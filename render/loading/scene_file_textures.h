@@ -1,4 +1,4 @@
-// Materials of a model and the images they use. Internal to scene_file*.cpp.
+// Reads the materials of a model and their images. Only for scene_file*.cpp.
 #pragma once
 
 #include <filesystem>
@@ -16,8 +16,9 @@ struct ModelFile {
   const std::filesystem::path& path;
 };
 
-/// Appends all materials of the model, in its order, and the base color images they use; an image
-/// that several materials share is read once. Returns the texture coordinate channel of each.
+/// Appends all materials of the model in their order, and their base color images. Reads an image
+/// once even if several materials share it. Returns the texture coordinate channel of each
+/// material.
 [[nodiscard]] std::vector<unsigned> read_materials(const ModelFile& file, Scene& scene,
                                                    std::vector<std::string>& notes);
 

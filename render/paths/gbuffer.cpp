@@ -12,11 +12,11 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-// Everything that one pixel gets.
+// All values of one pixel of the G-buffer.
 struct Pixel {
   EyeHit eye;
   std::uint32_t id = 0;
-  glm::vec3 before{0.0f};  // in the previous camera's view space; the direction, for the sky
+  glm::vec3 before{0.0f};  // position in the previous view space; for the sky its direction
 };
 
 void store(const Pixel& pixel, const Camera& previous, glm::ivec2 at, Frame& frame) {
@@ -32,7 +32,7 @@ void store(const Pixel& pixel, const Camera& previous, glm::ivec2 at, Frame& fra
   const glm::vec2 center(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
   const glm::vec2 motion =
       seen ? previous.view_to_pixel(pixel.before) - center : glm::vec2(kUnseenMotion);
-  // A grazing point may land anywhere; beyond the bound it is just as far outside.
+  // Points near the plane of the previous camera project to huge values: clamp them to the bound.
   frame.motion[0](x, y) = glm::clamp(motion.x, kUnseenMotion, -kUnseenMotion);
   frame.motion[1](x, y) = glm::clamp(motion.y, kUnseenMotion, -kUnseenMotion);
   frame.previous_depth(x, y) = seen && pixel.id == 0 ? kInfinity : pixel.before.z;
@@ -57,7 +57,8 @@ glm::vec3 shape_normal_at(const Lights& lights, std::uint32_t shape, const glm::
   return shape_normal(lights.spheres[shape - lights.rects.size()], point);
 }
 
-// Shapes are told apart by their place in Lights; if that list has changed, they stand still.
+// Light shapes are identified by their index in Lights. If the number of shapes has changed, they
+// count as not moving.
 glm::vec3 previous_point(const Lights& now, const Lights& then, const EyeHit& eye) {
   const std::uint32_t shape = eye.shape.shape;
   if (shape < now.rects.size()) {
@@ -69,7 +70,7 @@ glm::vec3 previous_point(const Lights& now, const Lights& then, const EyeHit& ey
   return previous_point(now.spheres[index], then.spheres[index], eye.position);
 }
 
-// Who it is, and where it was.
+// Finds the id of the hit and its position in the previous frame.
 Pixel identify(const World& world, const PreviousView& previous, const EyeHit& eye) {
   Pixel pixel{eye};
   const Camera& camera = previous.camera;

@@ -1,4 +1,4 @@
-// The first hit of the guide ray through each pixel center.
+// G-buffer: the first hit of the guide ray through each pixel center.
 #pragma once
 
 #include <cstdint>
@@ -12,46 +12,48 @@
 
 namespace eigenlight {
 
-/// What a guide ray met. Surfaces that reflect have `point`; lights and the sky do not.
+/// First hit of a guide ray. Only kSurface, a reflecting surface, fills `point`.
 struct GuideHit {
-  enum class Kind : std::uint8_t { kSky, kShape, kSurface };
+  enum class Kind : std::uint8_t { kSky, kShape, kSurface };  // kShape: a light shape
   Kind kind = Kind::kSky;
   SurfacePoint point;
 };
 
-/// What a ray from the eye meets: all of a point of the picture but the light that arrives there.
+/// First hit of a camera ray: everything but the light that arrives there.
 struct EyeHit {
   GuideHit guide;
   float depth = std::numeric_limits<float>::infinity();  ///< along the view axis
-  glm::vec3 direction{0.0f};                             ///< of the ray, unit
+  glm::vec3 direction{0.0f};                             ///< unit direction of the ray
   glm::vec3 position{0.0f}, normal{0.0f}, albedo{0.0f};  ///< as in GBuffer; 0 without surface
-  glm::vec3 emission{0.0f};                              ///< of the sky too
-  Hit hit;                                               ///< of kSurface
-  ShapeHit shape;                                        ///< of kShape
+  glm::vec3 emission{0.0f};                              ///< of surface, light shape or sky
+  Hit hit;                                               ///< valid for kSurface
+  ShapeHit shape;                                        ///< valid for kShape
 };
 
-/// The ray through `pixel` (in pixel coordinates, not only centers). Textures are read as a cone of
-/// `spread` radians sees them; 1 / camera.focal is a pixel's. Thin glass is not seen.
+/// Traces the camera ray through the point `pixel` in pixel coordinates. Textures are filtered over
+/// a cone of `spread` radians; one pixel has 1 / camera.focal. Thin glass is ignored.
 [[nodiscard]] EyeHit trace_eye(const World& world, const Camera& camera, const glm::vec2& pixel,
                                float spread);
 
-/// The frame that motion leads to.
+/// The scene of the frame that motion vectors lead to.
 struct PreviousView {
   Camera camera;
-  Lights lights;                     ///< shapes move too
-  std::span<const glm::mat4> poses;  ///< of all instances
+  Lights lights;                     ///< for the motion of light shapes
+  std::span<const glm::mat4> poses;  ///< world transforms of all instances
 };
 
-/// Fills depth, normal, albedo, id, position, emission, motion and previous_depth of the pixels of
-/// `tile` from rays of frame.camera, and `hits`. Ids: instance + 1, then the light shapes. Thin
-/// glass is not seen. Motion is exact: the point of the same triangle (of the same light; of the
-/// same direction, for the sky) under the previous pose and camera. A point that was not in front
-/// of the previous camera gets kUnseenMotion and its previous_depth, which is then not positive.
-/// Returns the number of rays. Planes of `frame` and `hits` must have the frame's size.
+/// Traces the guide rays of `tile` from frame.camera. Fills `hits` and the planes depth, normal,
+/// albedo, id, position, emission, motion and previous_depth of `frame`. All planes must have the
+/// size of the frame. Returns the number of rays.
+///
+/// The id of an instance is its index + 1; light shapes follow. Thin glass is ignored. Motion is
+/// exact: it leads to the same point of the triangle or light shape under the previous pose and
+/// camera, for the sky to the same direction. A point that was not in front of the previous camera
+/// gets kUnseenMotion; its previous_depth is then not positive.
 std::int64_t trace_guides(const World& world, const PreviousView& previous, const Rect& tile,
                           Frame& frame, Plane<GuideHit>& hits);
 
-/// Pixels, in x and y: outside every image.
+/// Motion in pixels, in x and y, that leads out of every image.
 inline constexpr float kUnseenMotion = -4.0f * kMaxSide;
 
 }  // namespace eigenlight

@@ -10,14 +10,14 @@ namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
 
-// Shadow rays end this fraction short of the light, so as not to meet it: far above the rounding of
-// a distance, far below any gap that matters.
+// Shadow rays end before the light by this fraction of the distance, so as not to hit it. It is far
+// above the rounding of a distance and far below any gap that matters.
 constexpr float kShort = 1e-4f;
 
 }  // namespace
 
-// False where the direction is under the surface: an interpolated normal leans over that far. Such
-// rays carry nothing, whichever way they are chosen.
+// Returns false if the direction points below the geometric surface, which can happen around an
+// interpolated normal. Such rays carry no light; light sampling rejects them too.
 bool PathTracer::sample_ray(const SurfacePoint& point, Sampler& sampler, Bounce& bounce) const {
   const glm::vec2 u = sampler.next_2d();
   const float radius = std::sqrt(u.x);
@@ -43,7 +43,7 @@ void PathTracer::trace(Bounce& bounce, std::int64_t& rays) const {
   bounce.tint = world_.geometry.glass_tint(rest);
 }
 
-// Radiance that lights emit against the ray, times the weight against aiming at them.
+// Radiance that lights emit along the ray, times the power heuristic against light sampling.
 glm::vec3 PathTracer::seen(const Bounce& bounce) const {
   const LightSet& lights = world_.lights;
   if (bounce.shape) {
@@ -57,8 +57,8 @@ glm::vec3 PathTracer::seen(const Bounce& bounce) const {
          lights.emitted(emission, bounce.ray.direction);
 }
 
-// What a ray sees of lights when nothing will be done with the surface that it meets. Where only
-// the sky shines, whether there is a surface is enough, at a third of the cost.
+// Light that the ray receives from emitters only, for rays that do not go on. If the sky is the
+// only light that a ray can meet, an occlusion test suffices, at a third of the cost.
 glm::vec3 PathTracer::look_for_lights(Bounce& bounce, std::int64_t& rays) const {
   if (!world_.lights.is_visible()) return glm::vec3(0.0f);
   if (world_.lights.has_visible_surfaces()) {
@@ -86,13 +86,13 @@ glm::vec3 PathTracer::shadowed(const SurfacePoint& point, const LightSample& sam
   return weight * cosine / kPi * sample.value * world_.geometry.glass_tint(ray);
 }
 
-// Light that reaches the point straight from one sun and one local light.
+// Light sampling: light that reaches the point directly from one sun and one local light.
 glm::vec3 PathTracer::aim(const SurfacePoint& point, Sampler& sampler, bool quick,
                           std::int64_t& rays) const {
   glm::vec3 sum(0.0f);
   if (world_.lights.has_suns()) {
     const auto sample = world_.lights.sample_sun(point.normal, sampler.next_2d());
-    if (sample) sum += shadowed(point, *sample, {0.0f, quick}, rays);  // no other ray finds a sun
+    if (sample) sum += shadowed(point, *sample, {0.0f, quick}, rays);
   }
   if (world_.lights.has_local()) {
     const float pick = sampler.next_1d();
@@ -151,13 +151,13 @@ void PathTracer::indirect(std::span<Path> paths, std::int64_t& rays) const {
   }
 }
 
-// One step of a path in four, each of which asks memory for what the next will read. They return
-// whether the path goes on.
+// One bounce of a path in four steps. Each step prefetches the memory that the next one reads and
+// returns whether the path goes on.
 bool PathTracer::send(Path& path, int depth, std::int64_t& rays) const {
   Bounce& bounce = path.bounce_;
   if (!sample_ray(path.at, path.sampler, bounce)) return false;
   bounce.ray.quick = true;
-  if (depth == bounces_) {  // the light that the last surface reflects
+  if (depth == bounces_) {  // light that the last surface reflects
     path.light += path.throughput_ * look_for_lights(bounce, rays);
     return false;
   }
@@ -175,7 +175,7 @@ void PathTracer::look_up(Path& path) const {
 bool PathTracer::arrive(Path& path, int depth) const {
   const Bounce& bounce = path.bounce_;
   path.throughput_ *= bounce.tint;
-  if (depth > 0) path.light += path.throughput_ * seen(bounce);  // at depth 0 it is direct light
+  if (depth > 0) path.light += path.throughput_ * seen(bounce);  // depth 0 is direct light
   if (!bounce.hit) return false;
   const auto [point, texel] = world_.surfaces.bounce_point(bounce.ray, *bounce.hit);
   path.at = point;
@@ -190,7 +190,7 @@ bool PathTracer::reflect(Path& path, int depth, std::int64_t& rays) const {
   throughput *= path.at.albedo;
   path.light += throughput * aim(path.at, path.sampler, true, rays);
   if (depth == 0) return true;
-  // Russian roulette, from the second bounce on.
+  // Russian roulette starts at the second bounce.
   const float brightest = std::max({throughput.x, throughput.y, throughput.z});
   const float survival = std::min(1.0f, brightest);
   if (!(path.sampler.next_1d() < survival)) return false;

@@ -1,4 +1,4 @@
-// Light at a point of a surface: direct, and by bounces.
+// Path tracer: direct and indirect light at a surface point.
 #pragma once
 
 #include <cstddef>
@@ -14,57 +14,59 @@
 
 namespace eigenlight {
 
-/// What rays travel through. All must outlive the tracer; poses and lights may change between
-/// calls.
+/// Geometry, surfaces and lights of a scene. All must outlive the tracer. Poses and lights may
+/// change between calls.
 struct World {
   const EmbreeScene& geometry;
   const SurfaceTable& surfaces;
   const LightSet& lights;
 };
 
-/// Estimates, one sample a call, of the two parts of the light that a Lambertian surface reflects,
-/// over its albedo: outgoing = albedo * (direct + indirect) + emission, where
+/// Estimates the two parts of the light that a Lambertian surface reflects, divided by its albedo.
+/// outgoing = albedo * (direct + indirect) + emission, where
 ///   direct   = 1/pi * integral of radiance that lights emit * cosine
 ///   indirect = 1/pi * integral of radiance that other surfaces reflect * cosine.
-/// Both are unbiased but for paths of more than `bounces` bounces, which indirect leaves out.
-/// Light is found by aiming at it and by cosine-distributed rays, combined by the power heuristic.
+/// Each call draws one sample. Both are unbiased, except that indirect leaves out paths of more
+/// than `bounces` bounces. Light sampling and cosine-distributed rays are combined by the power
+/// heuristic (Veach 1997).
 class PathTracer {
  public:
-  /// `bounces` in [1, 64]: 1 is light that one other surface reflects.
+  /// `bounces` in [1, 64]; with 1, indirect light has been reflected by one other surface.
   PathTracer(const World& world, int bounces) : world_(world), bounces_(bounces) {}
 
-  /// May be NaN or Inf if the scene is. Adds the rays that were traced to `rays`.
+  /// One sample; NaN or Inf if the scene contains such values. Adds the number of traced rays to
+  /// `rays`.
   [[nodiscard]] glm::vec3 direct(const SurfacePoint& point, Sampler& sampler,
                                  std::int64_t& rays) const;
   [[nodiscard]] glm::vec3 indirect(const SurfacePoint& point, const Sampler& sampler,
                                    std::int64_t& rays) const;
 
-  /// Paths side by side: enough for a fetch from memory to arrive meanwhile, few enough for the
-  /// first-level cache.
+  /// Number of paths traced side by side: enough to hide memory latency, and few enough for the
+  /// first-level cache (7 kB).
   static constexpr std::size_t kSideBySide = 32;
 
   struct Path;
-  /// The same for many: each path's `light` is, bit for bit, what it would be alone. They go side
-  /// by side, so that memory is fetched for some while others are computed.
+  /// Traces many paths side by side, so that memory is fetched for some while others compute. The
+  /// `light` of each path has the same bits as when it is traced alone.
   void indirect(std::span<Path> paths, std::int64_t& rays) const;
 
-  /// Which lights shine on the point: bit 0 for a sun, bit 1 for a local light, each judged by one
-  /// ray to one fixed place of the light that the point would choose at random number 1/2. Without
-  /// noise, so that neighboring points may be told apart by it.
+  /// Bit 0 is set if a sun lights the point, bit 1 if a local light does. Each bit comes from one
+  /// shadow ray to a fixed point of the light that random numbers of 1/2 select. The result has no
+  /// noise, so neighboring points can be compared.
   [[nodiscard]] std::uint8_t lit_by(const SurfacePoint& point, std::int64_t& rays) const;
 
  private:
-  struct Bounce {  // a cosine-distributed ray, by sample_ray(); and what it met, by trace()
-    Ray ray;
+  struct Bounce {      // sample_ray() fills the ray, trace() the rest
+    Ray ray;           // cosine-distributed
     float pdf = 0.0f;  // per steradian
     glm::vec3 tint{1.0f};
-    std::optional<QuadHit> hit;     // looked up by look_up()
-    std::optional<ShapeHit> shape;  // then there is no hit
+    std::optional<QuadHit> hit;     // refers to a quad until look_up()
+    std::optional<ShapeHit> shape;  // excludes `hit`
   };
   [[nodiscard]] glm::vec3 aim(const SurfacePoint& point, Sampler& sampler, bool quick,
                               std::int64_t& rays) const;
   struct Aim {
-    float weight_against = 0.0f;  // of other rays that find the same light
+    float weight_against = 0.0f;  // 1: cosine-distributed rays find the light too; 0: they do not
     bool quick = false;           // Ray::quick
   };
   [[nodiscard]] glm::vec3 shadowed(const SurfacePoint& point, const LightSample& sample,
@@ -82,11 +84,11 @@ class PathTracer {
   int bounces_;
 };
 
-/// One sample of indirect light.
+/// One path: one sample of indirect light.
 struct PathTracer::Path {
   Path() : sampler(0, 0) {}
   Path(const SurfacePoint& point, const Sampler& s) : Path() { start(point, s); }
-  /// The same as a new path.
+  /// Resets the path; equal to constructing a new one.
   void start(const SurfacePoint& point, const Sampler& s) {
     at = point;
     sampler = s;
@@ -101,7 +103,7 @@ struct PathTracer::Path {
  private:
   friend class PathTracer;
   glm::vec3 throughput_{1.0f};
-  const std::uint32_t* texel_ = nullptr;  // of `at`, not yet in its albedo
+  const std::uint32_t* texel_ = nullptr;  // of `at`; not yet multiplied into its albedo
   Bounce bounce_;
 };
 

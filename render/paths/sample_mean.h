@@ -1,4 +1,4 @@
-// Means of light samples that leave out what is not a number, and count it.
+// Means of light samples that leave out and count non-finite samples.
 #pragma once
 
 #include <cmath>
@@ -10,18 +10,18 @@
 
 namespace eigenlight {
 
-/// What a tile did; summed in tile order.
+/// Counters of one tile. They are summed in tile order.
 struct RayCounters {
   std::int64_t rays = 0;
-  std::int64_t non_finite = 0;  ///< samples left out
+  std::int64_t non_finite = 0;  ///< samples left out of the means
 };
 
 [[nodiscard]] inline bool is_finite(const glm::vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-/// Mean of the finite samples. NaN if there are samples but none is finite: the pixel knows
-/// nothing, and black would claim that it does.
+/// Mean of the finite samples. NaN if no sample is finite: the value is unknown, and 0 would mean
+/// black.
 class FiniteMean {
  public:
   void add(const glm::vec3& sample, RayCounters& counters) {

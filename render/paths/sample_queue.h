@@ -1,4 +1,4 @@
-// Samples of indirect light of many pixels, traced side by side.
+// Traces samples of indirect light of many pixels side by side.
 #pragma once
 
 #include <array>
@@ -9,15 +9,15 @@
 
 namespace eigenlight {
 
-/// Collects samples, traces them when there are enough, and adds each to its mean: those of one
-/// mean in the order in which they came.
+/// Collects samples, traces them in groups of PathTracer::kSideBySide, and adds each to its mean.
+/// The samples of one mean are added in the order of add().
 class SampleQueue {
  public:
-  /// Both must outlive the queue. Rays and what is not finite are added to `counters`.
+  /// Both must outlive the queue. Counts rays and non-finite samples in `counters`.
   SampleQueue(const PathTracer& tracer, RayCounters& counters)
       : tracer_(tracer), counters_(counters) {}
 
-  /// `mean` must not move until flush().
+  /// `mean` must stay at its address until flush().
   void add(const SurfacePoint& point, const Sampler& sampler, FiniteMean& mean) {
     paths_[size_].start(point, sampler);
     means_[size_] = &mean;

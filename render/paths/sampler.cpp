@@ -23,9 +23,9 @@ constexpr std::uint32_t scramble_reversed(std::uint32_t x, std::uint32_t seed) {
   return x;
 }
 
-// Second Sobol dimension of `index`, bit-reversed: its generator is Pascal's triangle mod 2, so bit
-// i is the parity of the index bits whose positions contain those of i (Lucas), a sum over
-// supersets.
+// Second Sobol dimension of `index`, bit-reversed. Its generator matrix is Pascal's triangle mod 2.
+// By Lucas's theorem bit i is the parity of the index bits whose position contains all bits of i,
+// which is a sum over supersets.
 constexpr std::uint32_t sobol_reversed(std::uint32_t index) {
   std::uint32_t x = index;
   x ^= x >> 1 & 0x55555555U;
@@ -36,14 +36,14 @@ constexpr std::uint32_t sobol_reversed(std::uint32_t index) {
   return x;
 }
 
-constexpr std::uint32_t kGolden = 0x9e3779b9U;  // 2^32 over the golden ratio: spreads the counter
+constexpr std::uint32_t kGolden = 0x9e3779b9U;  // 2^32 / golden ratio: spreads successive keys
 
 }  // namespace
 
 Sampler::Sampler(std::uint32_t key, std::uint32_t index)
     : key_(key), reversed_index_(reverse_bits(index)) {}
 
-// The shuffled index of the next pair; shuffling is Owen scrambling of the index itself.
+// Returns the shuffled index for the next pair. The shuffle is an Owen scrambling of the index.
 std::uint32_t Sampler::next_index(std::uint32_t& seed) {
   key_ += kGolden;
   seed = mix32(key_);

@@ -1,4 +1,4 @@
-// Low-discrepancy samples without state.
+// Stateless low-discrepancy samples.
 #pragma once
 
 #include <cstdint>
@@ -6,13 +6,13 @@
 
 namespace eigenlight {
 
-/// The numbers of one sample of one pixel: an Owen-scrambled Sobol (0,2)-sequence in each pair of
-/// dimensions, the pairs shuffled against each other (Burley, Practical Hash-based Owen Scrambling,
-/// JCGT 9(4), 2020). Samples 0, 1, 2, ... of one key are together well spread, over any power of
-/// two of them best; keys are independent of each other.
+/// Random numbers of one sample of one pixel: an Owen-scrambled Sobol (0,2)-sequence in each pair
+/// of dimensions, with the sample order shuffled per pair (Burley, Practical Hash-based Owen
+/// Scrambling, JCGT 9(4), 2020). Samples 0, 1, 2, ... of one key are stratified, best for powers of
+/// two. Different keys are independent.
 class Sampler {
  public:
-  /// `key` names the pixel, frame and seed.
+  /// `key` is a hash of pixel, frame and seed; `index` is the number of the sample.
   Sampler(std::uint32_t key, std::uint32_t index);
 
   /// The next pair of dimensions, in [0, 1)^2.

@@ -34,12 +34,12 @@ void EmbreeGroup::commit() const {
 EmbreeScene::Impl::Impl(const Scene& s, std::size_t moving_count) : scene(&s) {
   const FloatTrapsOff embree_calculates_with_inf;
   check_scene(s);
-  EL_CHECK(moving_count <= s.instances.size(), "{} moving instances: the scene has {}",
+  EL_CHECK(moving_count <= s.instances.size(), "{} moving instances: expected at most {}",
            moving_count, s.instances.size());
   first_moving = s.instances.size() - moving_count;
-  // No thread count: Embree would impose it on every TBB loop of the process.
+  // Embree would apply a thread count to every TBB loop of the process, so none is given.
   device.reset(rtcNewDevice(nullptr));
-  if (!device) throw std::runtime_error("Embree: could not make a device");
+  if (!device) throw std::runtime_error("Embree: cannot create a device");
   for (const Mesh& mesh : s.meshes) parts.push_back(split_by_opacity(s, mesh));
   mesh_scenes.resize(s.meshes.size());
   still.scene = make_scene(RTC_SCENE_FLAG_ROBUST, RTC_BUILD_QUALITY_MEDIUM);
@@ -55,8 +55,8 @@ EmbreeScene::Impl::Impl(const Scene& s, std::size_t moving_count) : scene(&s) {
   check_embree(device.get(), s);
 }
 
-// High quality splits triangles, but not those of robust scenes in Embree 3.13. A ray that gathers
-// glass would meet a split pane twice.
+// High build quality splits triangles, except in robust scenes (Embree 3.13). The scene of thin
+// glass must be robust, because a ray would collect the tint of a split pane twice.
 EmbreeHandle<RTCScene> EmbreeScene::Impl::make_scene(RTCSceneFlags flags,
                                                      RTCBuildQuality quality) const {
   EmbreeHandle<RTCScene> handle(rtcNewScene(device.get()));
@@ -91,7 +91,8 @@ EmbreeHandle<RTCGeometry> EmbreeScene::Impl::make_instance(int mesh, const glm::
   return geometry;
 }
 
-// Still meshes that stand once go into the hierarchy of their group as they are, in world space.
+// Meshes that do not move and are used once are merged into the hierarchy of their group in world
+// space. All others become Embree instances.
 void EmbreeScene::Impl::place(std::size_t instance, std::size_t uses) {
   const Instance& placed = scene->instances[instance];
   transforms.push_back(placed.to_world);
@@ -116,7 +117,7 @@ void EmbreeScene::Impl::set_transform(std::size_t instance, const glm::mat4& tra
   transforms[instance] = transform;
   placements[instance] = placement_of(transform);
   const EmbreeHandle<RTCGeometry>& geometry = instance_geometry[instance];
-  if (geometry) pose(geometry.get(), transform);  // null: a mesh without triangles
+  if (geometry) pose(geometry.get(), transform);  // null if the mesh has no triangles
 }
 
 }  // namespace eigenlight

@@ -1,4 +1,4 @@
-// What stands behind EmbreeScene: Embree's handles, and which of its hierarchies holds what.
+// Implementation of EmbreeScene: Embree handles, and which hierarchy holds which instances.
 #pragma once
 
 #include <embree3/rtcore.h>
@@ -23,27 +23,27 @@ struct ReleaseEmbree {
 template <typename Handle>
 using EmbreeHandle = std::unique_ptr<std::remove_pointer_t<Handle>, ReleaseEmbree>;
 
-/// Triangles of one mesh as one Embree geometry, and what the filters need of them.
+/// Triangles of one mesh that form one Embree geometry, with the data its filter functions read.
 struct EmbreePart {
   const Mesh* mesh = nullptr;
   const Material* material = nullptr;
-  const Texture* texture = nullptr;  ///< of the holes; null: none
+  const Texture* texture = nullptr;  ///< its alpha cuts the holes; null: no holes
   Quads quads;
-  std::vector<std::array<glm::vec2, 4>> uv;  ///< of each quad's corners, if there are holes
+  std::vector<std::array<glm::vec2, 4>> uv;  ///< at the corners of each quad; empty: no holes
 };
 
-/// Triangles that are nothing but hole are left out; those without holes need no filter and are a
-/// part of their own.
+/// Splits `mesh` into a part without holes, which needs no filter function, and a part with holes.
+/// Triangles that lie entirely in a hole are left out.
 [[nodiscard]] std::vector<EmbreePart> split_by_opacity(const Scene& scene, const Mesh& mesh);
-/// `part` must outlive the geometry. Throws std::runtime_error if there is no memory.
+/// Makes a geometry of `part` in world space. `part` must outlive it. Throws std::runtime_error if
+/// memory runs out.
 [[nodiscard]] EmbreeHandle<RTCGeometry> make_quads(RTCDevice device, const Scene& scene,
                                                    EmbreePart& part, const glm::mat4& transform);
-/// Throws std::runtime_error, with the name of the scene, if Embree has failed since it was asked
-/// last.
+/// Throws std::runtime_error with the name of the scene if Embree has failed since the last call.
 void check_embree(RTCDevice device, const Scene& scene);
 
-/// Of rays that gather what thin glass does to them; `embree` is the first member, as Embree's
-/// manual has it for extended contexts.
+/// Context of rays that collect the tint of thin glass. `embree` must be the first member (Embree
+/// manual, extended contexts).
 struct GlassContext {
   RTCIntersectContext embree;
   glm::vec3 tint{1.0f};
@@ -53,11 +53,11 @@ struct GlassContext {
 struct EmbreeGroup {
   struct Member {
     std::uint32_t instance = 0;
-    const EmbreePart* part = nullptr;  ///< null: the instance has a hierarchy of its own
+    const EmbreePart* part = nullptr;  ///< null: an Embree instance with its own hierarchy
   };
   EmbreeHandle<RTCScene> scene;
-  EmbreeHandle<RTCScene> quick;  ///< the same geometries, for quick rays; null: `scene` serves them
-  std::vector<Member> members;   ///< by Embree's geometry id
+  EmbreeHandle<RTCScene> quick;  ///< the same geometries for quick rays; null: they use `scene`
+  std::vector<Member> members;   ///< indexed by Embree geometry id
 
   [[nodiscard]] bool empty() const { return members.empty(); }
   [[nodiscard]] RTCScene for_ray(const Ray& ray) const {
@@ -68,7 +68,7 @@ struct EmbreeGroup {
 };
 
 struct EmbreeScene::Impl {
-  /// What follows from an instance's transform.
+  /// Values derived from the transform of an instance.
   struct Placement {
     glm::mat3 normal_matrix{1.0f};
     float area_scale = 1.0f;
@@ -76,17 +76,17 @@ struct EmbreeScene::Impl {
 
   Impl(const Scene& s, std::size_t moving_count);
   void set_transform(std::size_t instance, const glm::mat4& transform);
-  /// Embree's hit in our terms.
+  /// Converts an Embree hit.
   [[nodiscard]] QuadHit resolve(const RTCRayHit& ray, const EmbreeGroup& group) const;
 
   const Scene* scene;
   std::size_t first_moving;
   EmbreeHandle<RTCDevice> device;
   std::vector<std::vector<EmbreePart>> parts;                // per mesh
-  std::vector<EmbreeHandle<RTCScene>> mesh_scenes;           // per mesh, where it is instanced
-  std::vector<EmbreeHandle<RTCGeometry>> instance_geometry;  // null where merged into its group
-  std::vector<glm::mat4> transforms;                         // per instance, as the next
-  std::vector<Placement> placements;
+  std::vector<EmbreeHandle<RTCScene>> mesh_scenes;           // per mesh; null if never instanced
+  std::vector<EmbreeHandle<RTCGeometry>> instance_geometry;  // per instance; null if merged
+  std::vector<glm::mat4> transforms;                         // per instance
+  std::vector<Placement> placements;                         // per instance
   EmbreeGroup still, moving, glass;
 
  private:

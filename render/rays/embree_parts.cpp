@@ -19,7 +19,8 @@ void reject_holes(const RTCFilterFunctionNArguments* args) {
   if (bilinear_alpha(*part.texture, at) < part.material->alpha_cutoff) args->valid[0] = 0;
 }
 
-// Rejects every hit after taking its color, so that the ray meets all panes, each once.
+// Multiplies the tint by the color of the pane and rejects the hit, so that the ray goes on through
+// all panes and meets each once.
 void gather_tint(const RTCFilterFunctionNArguments* args) {
   const auto& part = *static_cast<const EmbreePart*>(args->geometryUserPtr);
   reinterpret_cast<GlassContext*>(args->context)->tint *= part.material->base_color;

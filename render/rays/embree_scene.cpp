@@ -93,7 +93,7 @@ std::optional<QuadHit> EmbreeScene::find(const Ray& ray) const {
     r.hit.geomID = r.hit.primID = r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     RTCIntersectContext context = incoherent_context();
     rtcIntersect1(group->for_ray(ray), &context, &r);
-    // The ray ends where it met something, so that a further group's hits are closer.
+    // Embree shortens the ray at a hit, so a hit in the next group is closer.
     if (r.hit.primID != RTC_INVALID_GEOMETRY_ID) closest = impl_->resolve(r, *group);
   }
   return closest;
@@ -106,7 +106,7 @@ bool EmbreeScene::occluded(const Ray& ray) const {
     if (group->empty()) continue;
     RTCIntersectContext context = incoherent_context();
     rtcOccluded1(group->for_ray(ray), &context, &r);
-    if (r.tfar < 0.0f) return true;  // Embree's mark of an occluded ray
+    if (r.tfar < 0.0f) return true;  // Embree sets tfar to -inf for an occluded ray
   }
   return false;
 }

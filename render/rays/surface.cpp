@@ -6,13 +6,14 @@
 namespace eigenlight {
 namespace {
 
-// A ray starts this fraction of (largest coordinate + distance traveled) off the surface: some 100
-// float ulps, twenty times the error of origin + t * direction.
+// A ray starts off the surface by this fraction of (largest coordinate + distance traveled). That
+// is about 100 float ulps, or twenty times the error of origin + t * direction.
 constexpr float kOffset = 1e-5f;
 
-// Rays start on the ray that found the surface, where nothing stands: along the normal alone, a
-// point in a corner may come to lie in the wall beside. A grazing ray is followed back by at most
-// one over this many offsets, the rest of the height is along the normal.
+// New rays start a little back on the ray that found the surface, where space is known to be empty.
+// An offset along the normal alone could put a point in a corner inside the next wall. On a grazing
+// ray the start moves back by at most 1 / kLeastCosine offsets; the rest of the height is along the
+// normal.
 constexpr float kLeastCosine = 0.1f;
 
 glm::vec2 interpolate(const std::array<glm::vec2, 3>& uv, const Hit& hit) {
@@ -21,7 +22,7 @@ glm::vec2 interpolate(const std::array<glm::vec2, 3>& uv, const Hit& hit) {
 
 std::array<std::int16_t, 3> pack(const glm::vec3& normal) {
   const float length = glm::length(normal);
-  if (!(length > 0.0f)) return {0, 0, 0};  // also NaN: the flat normal will stand in
+  if (!(length > 0.0f)) return {0, 0, 0};  // zero or NaN: shading_normal() uses the flat normal
   const glm::vec3 n = normal / length * 32767.0f;
   return {static_cast<std::int16_t>(std::lround(n.x)), static_cast<std::int16_t>(std::lround(n.y)),
           static_cast<std::int16_t>(std::lround(n.z))};

@@ -9,8 +9,7 @@ namespace {
 
 constexpr int kLeafTriangles = 8;
 
-/// Squared distance from `p` to triangle (a, b, c): the regions of Ericson, Real-Time Collision
-/// Detection, 5.1.5.
+/// Squared distance from `p` to triangle (a, b, c) (Ericson, Real-Time Collision Detection, 5.1.5).
 float squared_distance(const glm::vec3& p, const glm::vec3& a, const glm::vec3& b,
                        const glm::vec3& c) {
   const glm::vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
@@ -29,7 +28,7 @@ float squared_distance(const glm::vec3& p, const glm::vec3& a, const glm::vec3& 
   const float on_bc = d4 - d3, off_bc = d5 - d6;
   if (va <= 0 && on_bc >= 0 && off_bc >= 0) return to(b + (c - b) * (on_bc / (on_bc + off_bc)));
   const float sum = va + vb + vc;
-  // A triangle without area that passed the edges above: its corners are as near as its edges.
+  // A triangle without area can get here; its corners are then as near as its edges.
   if (!(sum > 0)) return std::min({to(a), to(b), to(c)});
   return to(a + ab * (vb / sum) + ac * (vc / sum));
 }
@@ -79,7 +78,7 @@ void Clearance::build(int node, int first, int count) {
   nodes_[static_cast<std::size_t>(node)] = {lower, upper, first, count};
   if (count <= kLeafTriangles) return;
 
-  // Split at the median along the longest axis: balanced whatever the triangles are.
+  // Split at the median along the longest axis, which balances the tree.
   const glm::vec3 size = center_upper - center_lower;
   const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
   const auto begin = triangles_.begin() + first;
@@ -98,7 +97,7 @@ void Clearance::build(int node, int first, int count) {
 
 float Clearance::distance(const glm::vec3& point, float limit) const {
   float best = limit * limit;
-  // Depth is log2 of the triangle count, as splits are at the median: 64 entries are never full.
+  // Median splits limit the depth to log2 of the number of triangles, so 64 entries suffice.
   int stack[64] = {0};
   int top = triangles_.empty() ? 0 : 1;
   while (top > 0) {
@@ -128,11 +127,11 @@ float Clearance::distance(const glm::vec3& point, float limit) const {
 float Clearance::free_travel(const Cone& cone, float limit) const {
   float travel = 0.0f;
   while (travel < limit) {
-    // A ball at `travel` + s has radius slope * (travel + s) and must fit into the free ball here.
+    // The cone at `travel` + s has radius slope * (travel + s) and must fit into the free ball.
     const float reach = (limit - travel) * (1.0f + cone.slope) + cone.slope * travel;
     const float free = distance(cone.origin + cone.direction * travel, reach);
     const float step = (free - cone.slope * travel) / (1.0f + cone.slope);
-    // Under a thousandth of the way the ball counts as touching: steps only get smaller from here.
+    // Steps below a thousandth of the travel count as contact, because they only get smaller.
     if (step <= 1e-3f * travel || step <= 0.0f) return travel;
     travel += step;
   }

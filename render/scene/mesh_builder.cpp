@@ -9,7 +9,8 @@
 namespace eigenlight {
 namespace {
 
-/// Texture coordinates in meters from the two axes along the surface; v grows downward on walls.
+/// Texture coordinates in meters along the two world axes closest to the surface. On walls v grows
+/// downward.
 glm::vec2 axis_uv(const glm::vec3& position, const glm::vec3& normal) {
   const glm::vec3 a = abs(normal);
   if (a.y >= a.x && a.y >= a.z) return {position.x, position.z};
@@ -62,7 +63,7 @@ void MeshBuilder::lathe(const Lathe& shape) {
     const glm::vec2 edge = shape.profile[i + 1] - shape.profile[i];
     return glm::normalize(glm::vec2(edge.y, -edge.x));
   };
-  // Normal at an end of edge `i`, shared with the edge beyond it unless the bend is sharp.
+  // Normal at an end of edge `i`: the mean with the `other` edge there, unless the bend is sharp.
   const auto end_normal = [&](std::size_t i, std::size_t other) {
     const glm::vec2 own = edge_normal(i), next = edge_normal(std::min(other, last - 1));
     return dot(own, next) > 0.766f ? glm::normalize(own + next) : own;  // cos 40 degrees
@@ -87,7 +88,7 @@ void MeshBuilder::lathe(const Lathe& shape) {
     const unsigned high = ring(shape.profile[i + 1], end_normal(i, i + 1), -next);
     length = next;
     for (unsigned s = 0; s < static_cast<unsigned>(shape.segments); ++s) {
-      // At the axis one of the two triangles has no area.
+      // One of the two triangles has no area at the axis.
       if (shape.profile[i].x > 0) {
         mesh_.triangles.emplace_back(low + s, low + s + 1, high + s + 1);
       }
@@ -105,14 +106,14 @@ void MeshBuilder::arch(const Arch& shape) {
         glm::pi<float>() * static_cast<float>(i) / static_cast<float>(shape.segments);
     return glm::vec2(-shape.radius * std::cos(turn), shape.spring + shape.radius * std::sin(turn));
   };
-  // Faces: strips from the arc up to the top, front and back; soffit below.
+  // Front, back and underside, in strips along the arc.
   for (int i = 0; i < shape.segments; ++i) {
     const glm::vec2 p = on_arc(i), q = on_arc(i + 1);
     quad({p, z}, {q, z}, {q.x, shape.top, z}, {p.x, shape.top, z});
     quad({q, -z}, {p, -z}, {p.x, shape.top, -z}, {q.x, shape.top, -z});
     quad({p, -z}, {q, -z}, {q, z}, {p, z});
   }
-  // Sides of the opening, which stand on the columns.
+  // Boxes at both sides of the opening; they stand on the columns.
   for (const float side : {-1.0f, 1.0f}) {
     const float inner = side * shape.radius, outer = side * shape.half_width;
     const float left = std::min(inner, outer), right = std::max(inner, outer);

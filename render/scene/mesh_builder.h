@@ -1,4 +1,4 @@
-// Meshes from shapes: what the built-in scenes are made of.
+// Builds meshes from simple shapes for the built-in scenes.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -10,22 +10,22 @@
 
 namespace eigenlight {
 
-/// Collects shapes into one mesh. Lengths are meters, and so are texture coordinates until take()
-/// scales them; walls and floors get theirs from the world axes, so that patterns of neighboring
-/// shapes line up. Normals face outward.
+/// Collects shapes into one mesh. Lengths are in meters; texture coordinates are in meters until
+/// take() scales them. Quads and boxes take texture coordinates from the world axes, so that the
+/// patterns of neighboring shapes line up. Normals face outward.
 class MeshBuilder {
  public:
-  /// Corners in order around the quad; the normal is along cross(b - a, d - a).
+  /// Adds a quad with its corners in order. The normal points along cross(b - a, d - a).
   void quad(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const glm::vec3& d);
-  /// A quad with its own texture coordinates: 0, 0 (top left) at `top_left`, 1, 1 at
-  /// `top_left` + `right` + `down`.
+  /// Adds a quad with texture coordinates (0, 0) at `top_left` and (1, 1) at `top_left` + `right` +
+  /// `down`.
   void picture(const glm::vec3& top_left, const glm::vec3& right, const glm::vec3& down);
-  /// All six sides.
+  /// Adds the six sides of an axis-aligned box.
   void box(const glm::vec3& lower, const glm::vec3& upper);
 
-  /// Turns a profile of (radius, height) around the y axis; heights ascend for an outward normal.
-  /// Edges of the profile sharper than 40 degrees stay sharp. Texture coordinates go once around in
-  /// 2 "meters", so that a pattern of 1 or 2 meters has no seam.
+  /// Surface of revolution of a profile of (radius, height) around the y axis. Heights must ascend
+  /// for outward normals. Profile edges sharper than 40 degrees stay sharp. The texture coordinate
+  /// u spans 2 meters per turn, so that a pattern of 1 or 2 meters has no seam.
   struct Lathe {
     std::vector<glm::vec2> profile;
     int segments = 32;
@@ -33,16 +33,17 @@ class MeshBuilder {
   };
   void lathe(const Lathe& shape);
 
-  /// A wall in the plane z = 0 of the given depth (half to each side), from the height `spring` to
-  /// `top`, with a round arch of `radius` cut out around x = 0.
+  /// A wall of thickness `depth` around the plane z = 0, from height `spring` to `top`, with a
+  /// round arch of `radius` cut out around x = 0.
   struct Arch {
     float half_width = 1.0f, radius = 0.8f, spring = 3.0f, top = 4.5f, depth = 0.5f;
     int segments = 24;
   };
   void arch(const Arch& shape);
 
-  /// A grid of `columns` x `rows` quads over (u, v) in [0, 1]^2, v = 0 at the top; texture
-  /// coordinates are u, v. `point` is smooth: normals come from its neighbors.
+  /// Adds a grid of `columns` x `rows` quads at point(u, v) for (u, v) in [0, 1]^2, with v = 0 at
+  /// the top. Texture coordinates are (u, v). Normals are central differences, so `point` should be
+  /// smooth.
   template <typename Point>
   void sheet(int columns, int rows, const Point& point) {
     std::vector<glm::vec3> points;
@@ -55,10 +56,11 @@ class MeshBuilder {
     add_grid(columns, rows, points);
   }
 
-  /// A leaf: a quad of the given half sides, seen from both sides.
+  /// Adds a leaf: a quad around `center` with the given half sides.
   void leaf(const glm::vec3& center, const glm::vec3& half_u, const glm::vec3& half_v);
 
-  /// The mesh, with texture coordinates times `texture_scale` (1 / meters for tiled patterns).
+  /// Returns the mesh and starts a new one. Texture coordinates are multiplied by `texture_scale`,
+  /// in 1 / meters for tiled patterns.
   [[nodiscard]] Mesh take(const std::string& name, int material, float texture_scale = 1.0f);
 
  private:

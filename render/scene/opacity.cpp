@@ -6,9 +6,9 @@
 namespace eigenlight {
 namespace {
 
-constexpr float kRounding = 1e-3f;  // of interpolated 8-bit values: 100 times their float ulps
+constexpr float kRounding = 1e-3f;  // 100 ulps of interpolated 8-bit values
 
-// Larger coordinates have too few digits to name texels.
+// Larger texture coordinates have too few digits to identify texels.
 constexpr float kMaxCoordinate = 1024.0f;
 
 }  // namespace
@@ -29,8 +29,8 @@ OpacityMap::OpacityMap(const Texture& texture, float cutoff) : extent_(texture.e
   }
 }
 
-// Texels that bilinear reading touches between two coordinates, and one more on either side against
-// rounding; the whole size at most, from 0 then.
+// Texels that bilinear interpolation reads between two coordinates, plus one on either side for
+// rounding; all texels if the span exceeds the texture.
 OpacityMap::Span OpacityMap::touched(float low, float high, int size) {
   if (!(low > -kMaxCoordinate && high < kMaxCoordinate)) return {0, size};
   const auto scale = static_cast<float>(size);
@@ -59,7 +59,7 @@ Opacity OpacityMap::between(const std::array<glm::vec2, 3>& uv) const {
   const Span x = touched(left, right, extent_.width);
   const Span y = touched(top, bottom, extent_.height);
   Counts all;
-  // A span that wraps falls into two.
+  // A span that wraps around is split into two.
   const auto parts = [](const Span& s, int size) {
     const int before = std::min(s.count, size - s.first);
     return std::array<Span, 2>{Span{s.first, before}, Span{0, s.count - before}};

@@ -1,4 +1,4 @@
-// Which triangles of a material with holes need no look at its texture.
+// Classifies triangles of a texture with holes as solid, hole or mixed.
 #pragma once
 
 #include <array>
@@ -12,8 +12,8 @@ namespace eigenlight {
 
 enum class Opacity : std::uint8_t {
   kSolid,  ///< bilinear_alpha() is nowhere below the cutoff
-  kHole,   ///< everywhere
-  kMixed,  ///< perhaps here and there
+  kHole,   ///< bilinear_alpha() is below the cutoff everywhere
+  kMixed,  ///< anything else, or unknown
 };
 
 /// Summed-area tables (Crow 1984) of one texture at one cutoff.
@@ -21,12 +21,12 @@ class OpacityMap {
  public:
   OpacityMap(const Texture& texture, float cutoff);
 
-  /// Of all points between three texture coordinates; kMixed where that is not certain.
+  /// Opacity of the triangle with the texture coordinates `uv`. Conservative: kMixed in doubt.
   [[nodiscard]] Opacity between(const std::array<glm::vec2, 3>& uv) const;
 
  private:
   struct Counts {
-    std::uint32_t solid = 0, hole = 0;  // texels above and left, that are surely so
+    std::uint32_t solid = 0, hole = 0;  // number of such texels above and to the left
   };
   struct Span {
     int first = 0, count = 0;

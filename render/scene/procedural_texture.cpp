@@ -40,7 +40,7 @@ float lattice(int x, int y, std::uint32_t seed) {
   return to_unit(hash_key(seed, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)));
 }
 
-/// Value noise in [0, 1] that repeats after `cells` in both axes.
+/// Value noise in [0, 1] over the unit square with `cells` cells per axis; it repeats.
 class Noise {
  public:
   Noise(const glm::ivec2& cells, std::uint32_t seed) : cells_(cells) {
@@ -48,7 +48,7 @@ class Noise {
       for (int x = 0; x < cells.x; ++x) values_.push_back(lattice(x, y, seed));
     }
   }
-  /// `uv` is not negative.
+  /// `uv` must not be negative.
   [[nodiscard]] float operator()(const glm::vec2& uv) const {
     const glm::vec2 p = uv * glm::vec2(cells_);
     const glm::vec2 base = floor(p), f = p - base;
@@ -67,7 +67,7 @@ class Noise {
   std::vector<float> values_;
 };
 
-/// Five octaves of noise, in [0, 1], mean near 0.5.
+/// Sum of five octaves of noise in [0, 1] with a mean near 0.5.
 class Fractal {
  public:
   Fractal(glm::ivec2 cells, std::uint32_t seed) {
@@ -130,7 +130,7 @@ class Landscape {
   std::vector<Fractal> ridges_, grains_;
 };
 
-/// Saturated from a hue in [0, 1].
+/// Saturated color of a hue in [0, 1].
 glm::vec3 rainbow(float hue) {
   const glm::vec3 phase = glm::vec3(hue) + glm::vec3(0.0f, 1.0f / 3.0f, 2.0f / 3.0f);
   return 0.42f + 0.4f * cos(phase * glm::two_pi<float>());
@@ -190,7 +190,7 @@ Texture paint_boards(const std::string& name, const Boards& boards) {
     const float across = uv.x * static_cast<float>(boards.boards);
     const int board = static_cast<int>(across);
     const float edge = std::min(across - std::floor(across), std::ceil(across) - across);
-    // A board is cut once, at its own place.
+    // Each board has one joint across, at a random position.
     const float cut = std::abs(uv.y - lattice(board, 1, boards.seed));
     const float grain = grains[static_cast<std::size_t>(board)](uv);
     const float tone = 0.6f * grain + 0.4f * lattice(board, 2, boards.seed);

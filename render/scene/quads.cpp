@@ -7,13 +7,13 @@
 namespace eigenlight {
 namespace {
 
-// Two triangles are joined where the box around both has at most this many times the surface of
-// their boxes together.
+// Two triangles are paired if the surface area of their common box is at most this many times the
+// sum of the areas of their own boxes.
 constexpr float kMaxGrowth = 2.0f;
 
 struct Box {
   glm::vec3 low, high;
-  [[nodiscard]] float surface() const {  // half of it
+  [[nodiscard]] float surface() const {  // half of the surface area
     const glm::vec3 d = high - low;
     return d.x * d.y + d.y * d.z + d.z * d.x;
   }
@@ -30,9 +30,9 @@ float growth(const Box& a, const Box& b) {
   return both.surface() / (a.surface() + b.surface());
 }
 
-// Side k of a triangle runs from its corner k to the next.
+// Side k of a triangle goes from corner k to the next corner.
 struct Side {
-  std::uint64_t ends = 0;  // from, to
+  std::uint64_t ends = 0;  // vertex indices: start in the high 32 bits, end in the low ones
   std::uint32_t triangle = 0;
   int side = 0;
 };
@@ -60,10 +60,10 @@ class Sides {
   void take(std::uint32_t triangle) { taken_[triangle] = true; }
 
   struct Match {
-    int side = 0;  // of the triangle asked for
+    int side = 0;  // of the given triangle
     Side other;
   };
-  /// The free neighbor that fits best.
+  /// Returns the unpaired neighbor whose common box grows least.
   [[nodiscard]] std::optional<Match> best_match(std::uint32_t triangle) const {
     std::optional<Match> best;
     float least = kMaxGrowth;
@@ -86,7 +86,7 @@ class Sides {
 
  private:
   const Mesh& mesh_;
-  std::vector<Side> sides_;  // by ends
+  std::vector<Side> sides_;  // sorted by ends
   std::vector<bool> taken_;
 };
 
@@ -113,7 +113,7 @@ void Quads::add(const Mesh& mesh, std::uint32_t triangle) {
   halves_.push_back({triangle << 2, triangle << 2});
 }
 
-// Both start at the corner that they do not share.
+// Both triangles start at the corner that the other one does not have.
 void Quads::add(const Mesh& mesh, std::uint32_t triangle, int side, std::uint32_t other,
                 int other_side) {
   const glm::uvec3& t = mesh.triangles[triangle];
@@ -133,7 +133,7 @@ Quads::Point Quads::point(std::uint32_t quad, float u, float v) const {
     u = 1.0f - u;
     v = 1.0f - v;
   }
-  // u and v are the shares of the corners after the one that the quad starts at.
+  // u and v weigh the two corners that follow the corner where the quad starts.
   switch (half & 3U) {
     case 0:
       return {half >> 2, u, v};

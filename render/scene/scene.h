@@ -1,4 +1,4 @@
-// Plain scene data: what a loader or a built-in scene fills, and what the renderer reads.
+// Plain scene data: loaders and built-in scenes fill it, and the renderer reads it.
 #pragma once
 
 #include <cstdint>
@@ -11,45 +11,46 @@
 
 namespace eigenlight {
 
-/// Base color image: 8-bit sRGB with alpha, row 0 at v = 0 (the top, as glTF has it); repeats.
+/// Base color image in 8-bit sRGB with alpha. Row 0 is the top, at v = 0 as in glTF. Repeats.
 struct Texture {
   std::string name;
   Extent extent;
-  std::vector<std::uint8_t> rgba;  ///< 4 bytes a pixel
+  std::vector<std::uint8_t> rgba;  ///< 4 bytes per pixel
 };
 
-/// A Lambertian surface, seen from both sides.
+/// A two-sided Lambertian material.
 struct Material {
   std::string name;
-  glm::vec3 base_color{0.5f};  ///< linear, [0, 1]; times the texture
-  int texture = -1;            ///< index into Scene::textures, or -1
-  float alpha_cutoff = 0.0f;   ///< texels of lower alpha are holes; 0: none
-  bool thin_glass = false;     ///< rays pass, tinted by base_color
-  glm::vec3 emission{0.0f};    ///< radiance of both sides
+  glm::vec3 base_color{0.5f};  ///< linear, [0, 1]; multiplied by the texture
+  int texture = -1;            ///< index into Scene::textures; -1: no texture
+  float alpha_cutoff = 0.0f;   ///< there are holes where alpha is lower; 0: no holes
+  bool thin_glass = false;     ///< rays pass straight through, tinted by base_color
+  glm::vec3 emission{0.0f};    ///< radiance emitted by both sides
 };
 
 struct Mesh {
   std::string name;
   std::vector<glm::vec3> positions;
-  std::vector<glm::vec3> normals;    ///< per vertex, or empty: flat
-  std::vector<glm::vec2> texcoords;  ///< per vertex, or empty
+  std::vector<glm::vec3> normals;    ///< one per vertex, or empty for flat shading
+  std::vector<glm::vec2> texcoords;  ///< one per vertex, or empty
   std::vector<glm::uvec3> triangles;
   int material = 0;
 };
 
-/// One mesh placed in the world. Meshes are shared: one Embree geometry each.
+/// A mesh placed in the world. Several instances can share one mesh.
 struct Instance {
   int mesh = 0;
   glm::mat4 to_world{1.0f};
 };
 
 struct SunLight {
-  glm::vec3 to_light{0, 1, 0};     ///< unit
-  glm::vec3 irradiance{0.0f};      ///< on a surface that faces it
+  glm::vec3 to_light{0, 1, 0};     ///< unit vector
+  glm::vec3 irradiance{0.0f};      ///< on a surface that faces the sun
   float angular_diameter = 0.53f;  ///< degrees
 };
 
-/// Emits from the side of cross(half_u, half_v) only. Not part of the meshes: the renderer adds it.
+/// A parallelogram that emits on the side of cross(half_u, half_v) only. It is not part of the
+/// meshes.
 struct AreaRect {
   glm::vec3 center{0.0f}, half_u{0.0f}, half_v{0.0f};
   glm::vec3 radiance{0.0f};
@@ -67,17 +68,17 @@ struct Environment {
   std::vector<glm::vec3> radiance;
 };
 
-/// All lights at one moment. Emissive triangles keep their radiance in Material::emission; it is
-/// multiplied by emissive_scale here, so that light may change without touching materials.
+/// All lights of one frame. The radiance of emissive triangles is Material::emission times
+/// emissive_scale, so that their light can change without changing materials.
 struct Lights {
   std::vector<SunLight> suns;
   glm::vec3 sky{0.0f};  ///< radiance from every direction that leaves the scene
   std::vector<AreaRect> rects;
   std::vector<SphereLight> spheres;
-  float environment_scale = 1.0f;  ///< of Scene::environment
+  float environment_scale = 1.0f;  ///< factor of Scene::environment
   glm::vec3 emissive_scale{1.0f};
-  /// Emissive triangles shine (1 + dot(d, emissive_tilt)) times as bright towards d; |tilt| <= 1.
-  /// A lamp that swings without moving its geometry; 0 is a plain diffuse emitter.
+  /// Multiplies the radiance of emissive triangles towards d by 1 + dot(d, emissive_tilt), with
+  /// |tilt| <= 1. It imitates a swinging lamp without moving geometry; 0 is a diffuse emitter.
   glm::vec3 emissive_tilt{0.0f};
 };
 
@@ -89,28 +90,28 @@ struct CameraKey {
 struct Scene {
   std::string name, title;
   std::vector<Mesh> meshes;
-  std::vector<Instance> instances;  ///< object id of a hit: index + 1
+  std::vector<Instance> instances;  ///< the object id of an instance is its index + 1
   std::vector<Material> materials;
   std::vector<Texture> textures;
   Lights lights;
   std::optional<Environment> environment;
-  std::vector<CameraKey> camera_path;  ///< at least one, seconds ascending
+  std::vector<CameraKey> camera_path;  ///< at least one key; seconds ascend
   float fov_y = 45.0f;                 ///< degrees
   glm::vec3 up{0, 1, 0};
-  float exposure = 1.0f;     ///< for pictures to look at, never for metrics
-  int missing_textures = 0;  ///< could not be read; grey stands in
+  float exposure = 1.0f;     ///< for display only, never for metrics
+  int missing_textures = 0;  ///< number of unreadable textures, replaced by gray
 };
 
-/// The scene at one frame.
+/// State of a scene in one frame.
 struct SceneState {
   Camera camera;
   Lights lights;
-  /// World transforms of the last poses.size() instances; those before them never move.
+  /// World transforms of the last poses.size() instances. All instances before them never move.
   std::vector<glm::mat4> poses;
 };
 
-/// A scene over time: a function of the frame number alone, so that any frame can be rendered
-/// alone.
+/// State of a scene over time. It depends on the frame number only, so that any frame can be
+/// rendered without the frames before it.
 class Animation {
  public:
   virtual ~Animation() = default;

@@ -23,7 +23,7 @@ const std::array<float, 256>& linear_table() {
   return table;
 }
 
-// Inverse, by table: 65536 steps of linear light are 20 to the code where the curve is steepest.
+// Inverse of linear_table(). With 65536 entries, even the narrowest sRGB code spans 20 of them.
 std::uint32_t linear_to_byte(float linear) {
   static const std::vector<std::uint8_t> table = [] {
     std::vector<std::uint8_t> t(65536);
@@ -44,11 +44,11 @@ glm::vec3 decode(std::uint32_t texel) {
   return {table[texel & 255U], table[texel >> 8 & 255U], table[texel >> 16 & 255U]};
 }
 
-// Index of the texel that holds u in an image of `size` texels that repeats. NaN gives 0.
+// Index of the texel that contains u in a repeating image of `size` texels; 0 for NaN.
 int wrap(float u, int size) {
   const float fraction = u - std::floor(u);
   const int i = fraction > 0.0f ? static_cast<int>(fraction * static_cast<float>(size)) : 0;
-  return std::min(i, size - 1);  // 1 - tiny rounds up to `size`
+  return std::min(i, size - 1);  // a fraction just below 1 can round up to `size`
 }
 
 // The two texels around u along one axis, and the weight of the second.
