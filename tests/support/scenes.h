@@ -1,4 +1,4 @@
-// Scenes of a few triangles whose light is known, and animations for them.
+// Scenes of a few triangles with known light, and animations for them.
 #pragma once
 
 #include <array>
@@ -38,7 +38,7 @@ inline int add_quad_mesh(Scene& scene, int material, const std::array<glm::vec3,
   return static_cast<int>(scene.meshes.size()) - 1;
 }
 
-/// The same, placed. Returns the index of the instance.
+/// Adds the mesh and one instance of it. Returns the index of the instance.
 inline int add_quad(Scene& scene, int material, const std::array<glm::vec3, 3>& corner_u_v) {
   scene.instances.push_back({add_quad_mesh(scene, material, corner_u_v), glm::mat4(1.0f)});
   return static_cast<int>(scene.instances.size()) - 1;
@@ -63,7 +63,7 @@ inline void add_cube(Scene& scene, int material) {
   }
 }
 
-/// Any function of the frame number.
+/// An animation from a function of the frame number.
 class FunctionAnimation final : public Animation {
  public:
   explicit FunctionAnimation(std::function<SceneState(int)> state) : state_(std::move(state)) {}
@@ -73,11 +73,24 @@ class FunctionAnimation final : public Animation {
   std::function<SceneState(int)> state_;
 };
 
-/// One view for ever, with the lights of the scene.
+/// A constant view with the lights of the scene.
 inline FunctionAnimation still(const Scene& scene, const Camera& camera) {
   return FunctionAnimation([lights = scene.lights, camera](int) {
     return SceneState{camera, lights, {}};
   });
+}
+
+/// Options with `spp` samples of both direct and indirect light.
+inline RenderOptions render_options(Extent extent, int spp) {
+  RenderOptions options;
+  options.extent = extent;
+  options.spp = options.direct_spp = spp;
+  return options;
+}
+
+/// A camera that looks straight down at the origin from a height of 0.5.
+inline Camera camera_down(Extent extent) {
+  return look_at({0, 0.5f, 0}, {0, 0, 0}, {0, 0, 1}, 40.0f, extent);
 }
 
 /// The first frame of a scene from a fixed camera.

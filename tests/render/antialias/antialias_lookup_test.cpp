@@ -1,4 +1,4 @@
-// Which guide ray lends its indirect light.
+// Lookup of indirect light at the most similar guide ray.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -14,7 +14,7 @@ using test::GuideFrame;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-TEST(Lookup, AgreesWithTheTwinOnRandomSurfaces) {
+TEST(Lookup, LookupMatchesTheReference) {
   const Extent extent{13, 9};
   const GuideFrame guides = test::random_guides(extent, 5);
   int none = 0, moved = 0;
@@ -28,7 +28,7 @@ TEST(Lookup, AgreesWithTheTwinOnRandomSurfaces) {
       continue;
     }
     moved += *found != glm::ivec2(eye.pixel);
-    // Float and double may order candidates differently that are alike to float noise.
+    // Float and double may order candidates of nearly equal similarity differently.
     const auto same = std::find_if(wanted.begin(), wanted.end(),
                                    [&](const auto& candidate) { return candidate.at == *found; });
     ASSERT_NE(same, wanted.end()) << i;
@@ -38,19 +38,19 @@ TEST(Lookup, AgreesWithTheTwinOnRandomSurfaces) {
   EXPECT_GT(moved, 1000);
 }
 
-TEST(Lookup, TakesTheSurfaceThatTheEyeRayMet) {
+TEST(Lookup, LookupPrefersTheSameSurface) {
   GuideFrame guides({4, 4});
   guides.set_all({2.0f, {0, 0, -1}, glm::vec3(0.1f)});
   for (int y = 0; y < 4; ++y) guides.set(2, y, {1.0f, {-1, 0, 0}, glm::vec3(0.9f)});
-  // The pixel's own guide ray met the wall behind; the eye ray, right of it, the pillar.
+  // The guide ray of the pixel met the wall; the camera ray to its right met the pillar in front.
   EXPECT_EQ(most_similar_guide(guides.map(), {{1.9f, 1.5f}, 1.01f, {-1, 0, 0}})->x, 2);
   EXPECT_EQ(most_similar_guide(guides.map(), {{1.9f, 1.5f}, 2.0f, {0, 0, -1}})->x, 1);
-  // Somewhere between the two.
+  // A hit between wall and pillar.
   EXPECT_EQ(most_similar_guide(guides.map(), {{1.9f, 1.5f}, 1.4f, {-1, 0, 0}})->x, 2);
   EXPECT_EQ(most_similar_guide(guides.map(), {{1.9f, 1.5f}, 1.4f, {-0.8f, 0, -0.6f}})->x, 2);
 }
 
-TEST(Lookup, OfEqualsTheNearestIsTaken) {
+TEST(Lookup, NearestPixelBreaksTies) {
   GuideFrame guides({4, 4});
   guides.set_all({});
   const GuideMap map = guides.map();
@@ -60,7 +60,7 @@ TEST(Lookup, OfEqualsTheNearestIsTaken) {
   EXPECT_EQ(*most_similar_guide(map, {{2.0f, 2.0f}, 1.0f, {0, 0, -1}}), glm::ivec2(1, 1));
 }
 
-TEST(Lookup, StaysInsideTheImage) {
+TEST(Lookup, LookupStaysInsideTheImage) {
   GuideFrame guides({1, 1});
   guides.set_all({});
   for (const glm::vec2 pixel : {glm::vec2(0.0f), {0.99f, 0.01f}, {0.2f, 0.9f}, {0.5f, 0.5f}}) {
@@ -68,8 +68,8 @@ TEST(Lookup, StaysInsideTheImage) {
   }
 }
 
-// Sky has an infinite depth: as a candidate it would make all surfaces equally deep.
-TEST(Lookup, SkyNeitherLendsLightNorSpoilsTheMaxima) {
+// The infinite depth of the sky would make all depth differences equal if it were a candidate.
+TEST(Lookup, SkyIsNotACandidate) {
   GuideFrame guides({2, 2});
   guides.set(0, 1, {1.0f, {0, 0, -1}});
   guides.set(1, 1, {2.0f, {0, 0, -1}});
@@ -77,7 +77,7 @@ TEST(Lookup, SkyNeitherLendsLightNorSpoilsTheMaxima) {
   EXPECT_EQ(*most_similar_guide(guides.map(), {{1.4f, 0.6f}, 1.1f, {0, 0, -1}}), glm::ivec2(0, 1));
 }
 
-TEST(Lookup, NothingWhereNoGuideRayMetASurface) {
+TEST(Lookup, ResultIsEmptyWithoutASurface) {
   GuideFrame guides({4, 4});
   EXPECT_FALSE(most_similar_guide(guides.map(), {{1.9f, 1.9f}, 1.0f, {0, 0, -1}}));
   guides.set(0, 0, {});
@@ -85,7 +85,7 @@ TEST(Lookup, NothingWhereNoGuideRayMetASurface) {
   EXPECT_TRUE(most_similar_guide(guides.map(), {{1.4f, 1.4f}, 1.0f, {0, 0, -1}}));
 }
 
-TEST(Lookup, LightThatIsNotANumberIsNotLent) {
+TEST(Lookup, PixelsOfNonFiniteLightAreSkipped) {
   GuideFrame guides({2, 1});
   guides.set(0, 0, {1.0f, {0, 0, -1}, {0.1f, kNan, 0.1f}});
   const EyePoint eye{{0.6f, 0.5f}, 1.0f, {0, 0, -1}};

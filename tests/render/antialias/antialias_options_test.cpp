@@ -1,4 +1,4 @@
-// What users may write after --aa.
+// Values of the option --aa.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ namespace {
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-TEST(AntialiasOptions, TextAndOptionsAreTheSame) {
+TEST(AntialiasOptions, ParsingInvertsFormatting) {
   for (const char* text :
        {"none", "lookup", "sraa", "sraa-geometry", "supersample:2", "supersample:1024"}) {
     EXPECT_EQ(format_antialias(parse_antialias(text)), text);
@@ -22,7 +22,7 @@ TEST(AntialiasOptions, TextAndOptionsAreTheSame) {
   EXPECT_EQ(parse_antialias("sraa").mode, AntialiasMode::kSraa);
 }
 
-TEST(AntialiasOptions, UnknownWordsListTheKnownOnes) {
+TEST(AntialiasOptions, ErrorListsTheKnownModes) {
   for (const char* text : {"", "fxaa", "Lookup", "lookup:4", "none:", ":", " sraa"}) {
     EXPECT_THAT([&] { (void)parse_antialias(text); },
                 ThrowsMessage<std::invalid_argument>(
@@ -31,7 +31,7 @@ TEST(AntialiasOptions, UnknownWordsListTheKnownOnes) {
   }
 }
 
-TEST(AntialiasOptions, CountsOutOfRangeNameTheRange) {
+TEST(AntialiasOptions, ErrorGivesTheRangeOfSamples) {
   for (const char* text :
        {"supersample", "supersample:", "supersample:1", "supersample:-4", "supersample:1025",
         "supersample:99999999999", "supersample:4x", "supersample:x", "supersample:4:4"}) {

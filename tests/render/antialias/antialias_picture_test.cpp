@@ -54,8 +54,8 @@ View ahead(Extent extent, const glm::vec3& eye = glm::vec3(0.0f)) {
   return {look_at(eye, eye + glm::vec3(0, 0, 1), {0, 1, 0}, 60.0f, extent), options_of(extent)};
 }
 
-/// A wall at z = 4 that covers what lies on one side of a slanted line, before a sky of radiance 2.
-/// Its albedo is 1/2 and it sees nothing but the sky: outgoing radiance 1.
+/// A wall at z = 4 on one side of a slanted line, in front of a sky of radiance 2. It has albedo
+/// 1/2 and sees only the sky, so its outgoing radiance is 1.
 Scene slanted_wall() {
   Scene scene;
   test::add_quad(scene, test::add_material(scene, glm::vec3(0.5f)),
@@ -64,8 +64,8 @@ Scene slanted_wall() {
   return scene;
 }
 
-// Whatever covers a pixel as a whole is as before.
-TEST(Picture, FlatRegionsAreUnchanged) {
+// Pixels that one surface covers entirely keep their color.
+TEST(Picture, FlatRegionsDoNotChange) {
   const View view = ahead({24, 16});
   const Scene scene = slanted_wall();
   for (const AntialiasOptions& aa : kAll) {
@@ -89,8 +89,8 @@ TEST(Picture, FlatRegionsAreUnchanged) {
   }
 }
 
-// Along an edge against the sky, radiance is the share of the pixel that each covers: the mean over
-// the pixels of the edge tells coverage far better than one ray a pixel can.
+// The radiance of a pixel on the edge is the mean of wall and sky, weighted by coverage. Five rays
+// estimate coverage much better than one.
 TEST(Picture, EdgesAgainstTheSkyShowCoverage) {
   View view = ahead({48, 32});
   view.options.spp = view.options.direct_spp = 1;  // the sky has no noise
@@ -116,13 +116,13 @@ TEST(Picture, EdgesAgainstTheSkyShowCoverage) {
   AntialiasOptions sixteen = kFour;
   sixteen.samples = 16;
   for (const AntialiasOptions& aa : {kLookup, kSraa, sixteen}) {
-    // Five places err by 1/10 of a pixel's coverage where one errs by 1/2: in squares 1/25. A
-    // 4 x 4 grid of jittered ones errs in the 4 cells that the edge passes: 1/32.
+    // With five rays the coverage errs by up to 1/10 of a pixel, with one by 1/2: 1/25 in squares.
+    // A jittered 4 x 4 grid errs in the 4 cells along the edge: 1/32.
     EXPECT_LT(error(picture_of(scene, view, aa).color), 0.06 * before) << format_antialias(aa);
   }
 }
 
-/// Bars of a fifth of a pixel before a black sky, lit by a lamp behind the camera.
+/// Bars of a fifth of a pixel in front of a black sky, lit by a lamp behind the camera.
 Scene thin_bars(const View& view) {
   Scene scene;
   const int material = test::add_material(scene, glm::vec3(0.8f));
@@ -136,9 +136,8 @@ Scene thin_bars(const View& view) {
   return scene;
 }
 
-// No guide ray meets some of the bars; they must show all the same, at the brightness that they
-// have.
-TEST(Picture, FeaturesThinnerThanAPixelAreSeen) {
+// No guide ray meets some of the bars. They must still be visible with the right brightness.
+TEST(Picture, FeaturesThinnerThanAPixelAreVisible) {
   const View view = ahead({30, 20});
   const Scene scene = thin_bars(view);
   AntialiasOptions fine = kFour;
@@ -157,7 +156,7 @@ TEST(Picture, FeaturesThinnerThanAPixelAreSeen) {
   }
 }
 
-/// A lamp, a textured-like floor of two colors and a block, seen from above: every kind of edge.
+/// A floor and a block of another color under a sun, a lamp and a sky, with every kind of edge.
 Scene still_life() {
   Scene scene;
   const int grey = test::add_material(scene, glm::vec3(0.6f));
@@ -173,7 +172,7 @@ Scene still_life() {
   return scene;
 }
 
-TEST(Picture, SameBitsForOneAndTwoThreads) {
+TEST(Picture, ThreadCountDoesNotChangeTheBits) {
   const Scene scene = still_life();
   const View view = ahead({40, 24});
   for (const AntialiasOptions& aa : kAll) {
@@ -188,8 +187,9 @@ TEST(Picture, SameBitsForOneAndTwoThreads) {
   }
 }
 
-// Filters read the frame; a picture must leave no trace in it, nor in what resample() draws.
-TEST(Picture, TheFrameAndItsSamplesStayAsTheyWere) {
+// Denoisers read the frame, so a picture must change neither the frame nor the samples of
+// resample().
+TEST(Picture, PictureDoesNotChangeTheFrame) {
   const Scene scene = still_life();
   const View view = ahead({20, 12});
   const test::FunctionAnimation animation = test::still(scene, view.camera);
@@ -214,7 +214,7 @@ TEST(Picture, TheFrameAndItsSamplesStayAsTheyWere) {
   }
 }
 
-TEST(Picture, AnyExtentIsFiniteAndBrightAsTheGuideRaysAre) {
+TEST(Picture, PictureOfAnyExtentIsFinite) {
   const Scene scene = still_life();
   for (const Extent extent : {kSweepExtents[0], kSweepExtents[1], kSweepExtents[3]}) {
     const View view = ahead(extent);
@@ -227,9 +227,8 @@ TEST(Picture, AnyExtentIsFiniteAndBrightAsTheGuideRaysAre) {
   }
 }
 
-// The indirect light that is handed in is what the picture shows, and a pixel of it that is not a
-// number stays alone.
-TEST(Picture, FilteredLightIsUsedAndNanDoesNotSpread) {
+// The picture shows the given indirect light, and a NaN pixel does not spread.
+TEST(Picture, PictureUsesDenoisedLightAndNanDoesNotSpread) {
   const View view = ahead({16, 12});
   Scene scene;
   test::add_quad(scene, test::add_material(scene, glm::vec3(0.5f)),
@@ -251,7 +250,7 @@ TEST(Picture, FilteredLightIsUsedAndNanDoesNotSpread) {
   }
 }
 
-TEST(Picture, WhatItCannotRenderIsNamed) {
+TEST(Picture, ErrorNamesTheBadInput) {
   const Scene scene = still_life();
   const View view = ahead({8, 6});
   const test::FunctionAnimation animation = test::still(scene, view.camera);
@@ -266,14 +265,14 @@ TEST(Picture, WhatItCannotRenderIsNamed) {
   };
   const Planes<3> small = make_planes<3>({4, 4});
   EXPECT_THAT(render({}, frame.lights[0].radiance),
-              ThrowsMessage<std::invalid_argument>(HasSubstr("nothing to render")));
+              ThrowsMessage<std::invalid_argument>(HasSubstr("expected a mode that renders")));
   EXPECT_THAT(render({AntialiasMode::kSupersample, 1}, frame.lights[0].radiance),
               ThrowsMessage<std::invalid_argument>(HasSubstr("1 samples, expected 2 to 1024")));
   EXPECT_THAT(render(kSraa, small),
-              ThrowsMessage<std::invalid_argument>(HasSubstr("differ in size")));
+              ThrowsMessage<std::invalid_argument>(HasSubstr("expected one size")));
   frame.index = 1;
   EXPECT_THAT(render(kLookup, frame.lights[0].radiance),
-              ThrowsMessage<std::invalid_argument>(HasSubstr("frame 1 is not the one")));
+              ThrowsMessage<std::invalid_argument>(HasSubstr("frame 1 is not the last frame")));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Light at a geometry sample from its shaded neighbors.
+// Reconstruction of light at a camera ray from the guide rays around it.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -15,7 +15,7 @@ using test::GuideFrame;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr glm::vec3 kBack{0, 0, -1};
 
-TEST(Reconstruct, AgreesWithTheTwinOnRandomSurfaces) {
+TEST(Reconstruct, ReconstructionMatchesTheReference) {
   const Extent extent{13, 9};
   const GuideFrame guides = test::random_guides(extent, 6);
   Plane<std::uint8_t> lit(extent);
@@ -36,8 +36,8 @@ TEST(Reconstruct, AgreesWithTheTwinOnRandomSurfaces) {
   EXPECT_LT(none, 3900);
 }
 
-// One surface, one light: nothing may change it, wherever in the image.
-TEST(Reconstruct, FlatStaysFlat) {
+// One surface of constant light keeps that light at every position in the image.
+TEST(Reconstruct, ConstantLightStaysConstant) {
   const Extent extent{5, 4};
   GuideFrame guides(extent);
   guides.set_all({3.0f, kBack, glm::vec3(0.3f, 0.1f, 0.7f), glm::vec3(0.5f)});
@@ -54,7 +54,7 @@ TEST(Reconstruct, FlatStaysFlat) {
   }
 }
 
-TEST(Reconstruct, DoesNotMixSurfacesAcrossAnEdge) {
+TEST(Reconstruct, LightDoesNotCrossAnEdge) {
   GuideFrame guides({4, 4});
   guides.set_all({2.0f, kBack, glm::vec3(0.1f)});
   for (int y = 0; y < 4; ++y) guides.set(2, y, {1.0f, kBack, glm::vec3(0.9f)});
@@ -63,7 +63,7 @@ TEST(Reconstruct, DoesNotMixSurfacesAcrossAnEdge) {
   EXPECT_NEAR(reconstruct_light(guides.map(), lit, {{2.0f, 1.5f}, 2.0f, kBack}, 0)->x, 0.1f, 1e-6f);
 }
 
-TEST(Reconstruct, DoesNotMixAcrossTheEdgeOfAShadow) {
+TEST(Reconstruct, LightDoesNotCrossAShadowEdge) {
   GuideFrame guides({4, 4});
   guides.set_all({2.0f, kBack, glm::vec3(0.0f), glm::vec3(4.0f)});
   Plane<std::uint8_t> lit({4, 4});
@@ -76,7 +76,7 @@ TEST(Reconstruct, DoesNotMixAcrossTheEdgeOfAShadow) {
   EXPECT_EQ(reconstruct_light(guides.map(), lit, {{1.9f, 1.6f}, 2.0f, kBack}, 0)->x, 0.0f);
 }
 
-TEST(Reconstruct, LightThatIsNotANumberDoesNotSpread) {
+TEST(Reconstruct, NonFiniteLightDoesNotSpread) {
   GuideFrame guides({3, 3});
   guides.set_all({1.0f, kBack, glm::vec3(0.5f)});
   guides.set(1, 1, {1.0f, kBack, glm::vec3(kNan)});
@@ -87,11 +87,11 @@ TEST(Reconstruct, LightThatIsNotANumberDoesNotSpread) {
   }
 }
 
-TEST(Reconstruct, NothingWhereNoNeighborIsAlike) {
+TEST(Reconstruct, ResultIsEmptyWithoutASimilarNeighbor) {
   GuideFrame guides({3, 3});
   const Plane<std::uint8_t> lit({3, 3});
   const EyePoint eye{{1.4f, 1.6f}, 1.0f, kBack};
-  EXPECT_FALSE(reconstruct_light(guides.map(), lit, eye, 0));  // sky all around
+  EXPECT_FALSE(reconstruct_light(guides.map(), lit, eye, 0));  // all pixels show the sky
   guides.set_all({2.0f, kBack});
   EXPECT_FALSE(reconstruct_light(guides.map(), lit, eye, 0));  // far behind
   guides.set_all({1.0f, kBack});

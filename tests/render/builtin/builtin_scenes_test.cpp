@@ -22,7 +22,7 @@ std::size_t triangles(const Scene& scene) {
   return count;
 }
 
-TEST_P(BuiltinSceneTest, IsWholeAndInRange) {
+TEST_P(BuiltinSceneTest, SceneIsValid) {
   const Scene scene = GetParam().make();
   EXPECT_EQ(scene.name, GetParam().name);
   EXPECT_EQ(scene.missing_textures, 0);
@@ -47,7 +47,7 @@ TEST_P(BuiltinSceneTest, IsWholeAndInRange) {
   }
 }
 
-TEST_P(BuiltinSceneTest, CameraPathIsLongEnoughAndClear) {
+TEST_P(BuiltinSceneTest, CameraPathStaysClearOfSurfaces) {
   const Scene scene = GetParam().make();
   const Clearance clearance(scene);
   ASSERT_GE(scene.camera_path.size(), 2U);
@@ -62,7 +62,7 @@ TEST_P(BuiltinSceneTest, CameraPathIsLongEnoughAndClear) {
   }
 }
 
-TEST_P(BuiltinSceneTest, IsTheSameEveryTime) {
+TEST_P(BuiltinSceneTest, SceneIsReproducible) {
   const Scene a = GetParam().make(), b = GetParam().make();
   ASSERT_EQ(a.meshes.size(), b.meshes.size());
   for (std::size_t i = 0; i < a.meshes.size(); ++i) {
@@ -76,7 +76,7 @@ TEST_P(BuiltinSceneTest, IsTheSameEveryTime) {
 INSTANTIATE_TEST_SUITE_P(All, BuiltinSceneTest, testing::ValuesIn(builtin_scenes()),
                          [](const auto& built) { return std::string(built.param.name); });
 
-TEST(BuiltinScenes, SizesAreAsDescribed) {
+TEST(BuiltinScenes, SizesMatchTheDocumentation) {
   EXPECT_EQ(triangles(make_builtin_scene("cornell")), 30U);
   const Scene atrium = make_builtin_scene("atrium");
   EXPECT_GE(triangles(atrium), 50'000U);
@@ -87,7 +87,7 @@ TEST(BuiltinScenes, SizesAreAsDescribed) {
   EXPECT_NEAR(size.z, 12.0f, 1.0f);
 }
 
-TEST(BuiltinScenes, UnknownNameListsTheKnownOnes) {
+TEST(BuiltinScenes, ErrorListsTheKnownScenes) {
   try {
     (void)make_builtin_scene("sponza");
     FAIL() << "expected an exception";

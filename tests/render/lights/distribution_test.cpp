@@ -8,7 +8,7 @@
 namespace eigenlight {
 namespace {
 
-TEST(Distribution, ChoosesInProportionAndStretchesTheRemainder) {
+TEST(Distribution, SamplesAreProportionalToWeights) {
   const std::array<float, 5> weights{1.0f, 0.0f, 3.0f, 4.0f, 0.0f};
   const Distribution d(weights);
   EXPECT_DOUBLE_EQ(d.total(), 8.0);
@@ -27,12 +27,12 @@ TEST(Distribution, ChoosesInProportionAndStretchesTheRemainder) {
   EXPECT_NEAR(remainder, 0.5, 1e-3);
 }
 
-TEST(Distribution, TheLargestNumberBelowOneChoosesTheLastWithAWeight) {
+TEST(Distribution, LargestNumberSelectsTheLastPositiveWeight) {
   const std::array<float, 3> weights{0.1f, 0.7f, 0.0f};
   EXPECT_EQ(Distribution(weights).sample(0x1.fffffep-1f).index, 1U);
 }
 
-TEST(Distribution, UnusableWeightsAreNeverChosen) {
+TEST(Distribution, InvalidWeightsAreNeverSampled) {
   const std::array<float, 4> weights{-1.0f, std::numeric_limits<float>::quiet_NaN(), 2.0f,
                                      std::numeric_limits<float>::infinity()};
   const Distribution d(weights);
@@ -41,7 +41,7 @@ TEST(Distribution, UnusableWeightsAreNeverChosen) {
   EXPECT_EQ(d.sample(0.99f).index, 2U);
 }
 
-TEST(Distribution, NothingToChooseFromHasNoTotal) {
+TEST(Distribution, TotalIsZeroWithoutWeights) {
   EXPECT_EQ(Distribution().total(), 0.0);
   const std::array<float, 2> weights{0.0f, 0.0f};
   EXPECT_EQ(Distribution(weights).total(), 0.0);

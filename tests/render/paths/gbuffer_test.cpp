@@ -1,4 +1,4 @@
-// What guide rays write.
+// Planes that guide rays fill.
 #include "render/paths/gbuffer.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ RenderOptions cheap(Extent extent) {
   return o;
 }
 
-TEST(GBuffer, DepthIsAlongTheViewAxisAndPositionOnThePixelsRay) {
+TEST(GBuffer, DepthIsMeasuredAlongTheViewAxis) {
   Scene scene;
   test::add_quad(scene, add_material(scene, {0.2f, 0.4f, 0.6f}),
                  {glm::vec3(-9, -9, 5), glm::vec3(18, 0, 0), glm::vec3(0, 18, 0)});
@@ -32,10 +32,10 @@ TEST(GBuffer, DepthIsAlongTheViewAxisAndPositionOnThePixelsRay) {
   const Frame frame = render_still(scene, camera, cheap(extent));
   for (int y = 0; y < extent.height; ++y) {
     for (int x = 0; x < extent.width; ++x) {
-      EXPECT_FLOAT_EQ(frame.surface.depth(x, y), 4.0f);  // not the distance, which is longer
+      EXPECT_FLOAT_EQ(frame.surface.depth(x, y), 4.0f);  // the distance along the ray is longer
       EXPECT_EQ(frame.surface.id(x, y), 1U);
       EXPECT_FLOAT_EQ(at(frame.surface.albedo, 2, x, y), 0.6f);
-      EXPECT_FLOAT_EQ(at(frame.surface.normal, 2, x, y), -1.0f);  // facing the camera
+      EXPECT_FLOAT_EQ(at(frame.surface.normal, 2, x, y), -1.0f);  // faces the camera
       glm::vec3 position;
       for (int c = 0; c < 3; ++c) position[c] = at(frame.position, c, x, y);
       const glm::vec2 pixel = camera.view_to_pixel(camera.to_view(position));
@@ -62,7 +62,7 @@ TEST(GBuffer, VertexNormalsAreInterpolatedUnlessTheyFaceAway) {
   EXPECT_FLOAT_EQ(at(render_still(scene, camera, cheap(extent)).surface.normal, 1, 0, 0), 1.0f);
 }
 
-TEST(GBuffer, LightShapesAreSurfacesBeyondTheInstancesAndReflectNothing) {
+TEST(GBuffer, LightShapesHaveIdsAfterTheInstances) {
   Scene scene;
   add_floor(scene, add_material(scene, glm::vec3(0.5f)), 5.0f);
   scene.lights.rects = {{{0, 0, 3}, {0, 9, 0}, {9, 0, 0}, {1, 2, 3}}};  // faces -z
@@ -80,7 +80,7 @@ TEST(GBuffer, LightShapesAreSurfacesBeyondTheInstancesAndReflectNothing) {
   EXPECT_FLOAT_EQ(frame.motion[0](4, 4), 0.0f);
 }
 
-TEST(GBuffer, MovingLightShapesMoveInTheImage) {
+TEST(GBuffer, MotionFollowsALightShape) {
   Scene scene;
   const Extent extent{9, 9};
   const Camera camera = look_at({0, 0, 0}, {0, 0, 1}, {0, 1, 0}, 60.0f, extent);
@@ -97,7 +97,7 @@ TEST(GBuffer, MovingLightShapesMoveInTheImage) {
   ASSERT_TRUE(source.next(frame));
   ASSERT_EQ(frame.surface.id(4, 4), 1U);
   const float depth = frame.surface.depth(4, 4);
-  // World x is to the left of the image or to the right of it; the distance is the same.
+  // World x may point to the left or right in the image; the distance is the same.
   EXPECT_NEAR(std::abs(frame.motion[0](4, 4)), 0.1f * camera.focal / depth, 1e-3f);
   EXPECT_NEAR(frame.previous_depth(4, 4), depth, 1e-5f);
 }
@@ -113,10 +113,10 @@ TEST(GBuffer, SkyHasNoSurface) {
   EXPECT_EQ(at(frame.surface.normal, 0, 1, 1), 0.0f);
   EXPECT_EQ(at(frame.lights[0].radiance, 0, 1, 1), 0.0f);
   EXPECT_EQ(at(frame.emission, 2, 1, 1), 3.0f);
-  EXPECT_EQ(frame.rays, 9);  // guides only
+  EXPECT_EQ(frame.rays, 9);  // guide rays only
 }
 
-// A fine checkerboard far away is gray to guide rays, whatever the pixel.
+// A distant fine checkerboard is gray in every pixel.
 TEST(GBuffer, TexturesAreFilteredOverThePixel) {
   Scene scene;
   const int board = add_material(scene, glm::vec3(1.0f));

@@ -10,7 +10,7 @@
 namespace eigenlight {
 namespace {
 
-/// The 2D point of sample i in the given pair of dimensions.
+/// The 2D point of sample i in one pair of dimensions.
 glm::vec2 point(std::uint32_t key, std::uint32_t i, int pair) {
   Sampler sampler(key, i);
   glm::vec2 p(0.0f);
@@ -18,9 +18,9 @@ glm::vec2 point(std::uint32_t key, std::uint32_t i, int pair) {
   return p;
 }
 
-// The definition of a (0, m, 2)-net: every box of area 2^-m whose sides are powers of two holds one
-// of 2^m points. It holds for each aligned block of a (0, 2)-sequence.
-TEST(Sampler, EveryElementaryBoxHoldsOnePoint) {
+// Definition of a (0, m, 2)-net: every box of area 2^-m whose sides are powers of two contains one
+// of the 2^m points. It applies to each aligned block of a (0, 2)-sequence.
+TEST(Sampler, EachElementaryBoxContainsOnePoint) {
   const int m = 6;
   for (const std::uint32_t key : {0U, 77U, 0xdeadbeefU}) {
     for (int pair = 0; pair < 3; ++pair) {
@@ -39,7 +39,7 @@ TEST(Sampler, EveryElementaryBoxHoldsOnePoint) {
   }
 }
 
-TEST(Sampler, KeysAndPairsAreUncorrelatedAndUniform) {
+TEST(Sampler, KeysAndDimensionPairsAreUncorrelated) {
   const int count = 20000;
   double mean = 0.0, across_keys = 0.0, across_pairs = 0.0, across_samples = 0.0;
   for (int k = 0; k < count; ++k) {

@@ -14,7 +14,7 @@ using test::add_material;
 
 const glm::vec3 kDown(0, -1, 0);
 
-/// Left half of the image opaque, right half clear.
+/// An image whose left half is opaque and whose right half is transparent.
 Texture half_clear() {
   Texture texture{"half", {8, 8}, std::vector<std::uint8_t>(256, 255)};
   for (std::size_t i = 0; i < 64; ++i) {
@@ -23,7 +23,7 @@ Texture half_clear() {
   return texture;
 }
 
-TEST(EmbreeScene, FindsTheNearestOfSeveralAndSaysWhich) {
+TEST(EmbreeScene, IntersectReturnsTheNearestTriangle) {
   Scene scene;
   const int material = add_material(scene, glm::vec3(0.5f));
   add_floor(scene, material, 1.0f, 0.0f);
@@ -39,14 +39,14 @@ TEST(EmbreeScene, FindsTheNearestOfSeveralAndSaysWhich) {
   EXPECT_FALSE(geometry.occluded({{0.3f, 2, 0.2f}, kDown, 0.0f, 1.4f}));
 }
 
-TEST(EmbreeScene, SharedMeshesKeepTheirInstance) {
+TEST(EmbreeScene, HitNamesTheInstanceOfASharedMesh) {
   Scene scene;
   add_floor(scene, add_material(scene, glm::vec3(0.5f)), 1.0f);
   const glm::mat4 aside = glm::translate(glm::mat4(1.0f), glm::vec3(10, 1, 0));
   scene.instances.push_back({0, glm::scale(aside, glm::vec3(2.0f))});
   const EmbreeScene geometry(scene);
   const auto first = geometry.intersect({{0, 5, 0}, kDown});
-  const auto second = geometry.intersect({{11.5f, 5, 0}, kDown});  // inside only when scaled
+  const auto second = geometry.intersect({{11.5f, 5, 0}, kDown});  // a hit only if scaled
   ASSERT_TRUE(first && second);
   EXPECT_EQ(first->instance, 0U);
   EXPECT_EQ(second->instance, 1U);
@@ -54,7 +54,7 @@ TEST(EmbreeScene, SharedMeshesKeepTheirInstance) {
   EXPECT_FLOAT_EQ(geometry.area_scale(1), 4.0f);
 }
 
-TEST(EmbreeScene, MovedInstancesAreWhereTheyWerePut) {
+TEST(EmbreeScene, MovedInstancesAreHitAtTheirNewPose) {
   Scene scene;
   const int material = add_material(scene, glm::vec3(0.5f));
   add_floor(scene, material, 1.0f);
@@ -88,7 +88,7 @@ TEST(EmbreeScene, HolesLetRaysThrough) {
   EXPECT_FALSE(geometry.occluded({{0.8f, 2, 0.5f}, kDown, 0.0f, 1.5f}));
 }
 
-TEST(EmbreeScene, EveryPaneTintsOnce) {
+TEST(EmbreeScene, EachGlassPaneTintsOnce) {
   Scene scene;
   const int blue = add_material(scene, {0.5f, 0.5f, 1.0f});
   const int red = add_material(scene, {1.0f, 0.5f, 0.25f});
@@ -104,7 +104,7 @@ TEST(EmbreeScene, EveryPaneTintsOnce) {
   EXPECT_EQ(geometry.glass_tint({{3, 3, 0}, kDown}), glm::vec3(1.0f));
 }
 
-// Rays at the edges and corners that the twelve triangles of a closed cube share.
+// The rays are aimed at edges and corners that the twelve triangles of a closed cube share.
 TEST(EmbreeScene, NoRayLeavesAClosedCube) {
   Scene scene;
   test::add_cube(scene, add_material(scene, glm::vec3(0.5f)));
@@ -120,7 +120,7 @@ TEST(EmbreeScene, NoRayLeavesAClosedCube) {
   }
 }
 
-// Quick rays may, but hardly ever do.
+// Quick rays can leave the cube, but rarely do.
 TEST(EmbreeScene, QuickRaysLeaveAClosedCubeLessThanOnceInAHundredThousand) {
   Scene scene;
   test::add_cube(scene, add_material(scene, glm::vec3(0.5f)));
@@ -138,7 +138,7 @@ TEST(EmbreeScene, QuickRaysLeaveAClosedCubeLessThanOnceInAHundredThousand) {
   EXPECT_LE(leaks, 3);
 }
 
-TEST(EmbreeScene, QuickRaysMeetWhatOthersMeet) {
+TEST(EmbreeScene, QuickRaysHitTheSameTriangles) {
   Scene scene;
   const int leaf = add_material(scene, glm::vec3(1.0f));
   scene.materials[0].texture = 0;
@@ -166,7 +166,7 @@ TEST(EmbreeScene, QuickRaysMeetWhatOthersMeet) {
   }
 }
 
-TEST(EmbreeScene, BadIndicesAreNamed) {
+TEST(EmbreeScene, ErrorNamesTheBadIndex) {
   Scene scene;
   add_floor(scene, add_material(scene, glm::vec3(0.5f)), 1.0f);
   scene.meshes[0].name = "floor";
@@ -179,7 +179,7 @@ TEST(EmbreeScene, BadIndicesAreNamed) {
   }
 }
 
-TEST(EmbreeScene, AnEmptySceneIsHitByNothing) {
+TEST(EmbreeScene, RaysMissAnEmptyScene) {
   const Scene scene;
   const EmbreeScene geometry(scene);
   EXPECT_FALSE(geometry.intersect({}));

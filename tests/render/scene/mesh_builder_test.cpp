@@ -8,7 +8,8 @@
 namespace eigenlight {
 namespace {
 
-/// By the divergence theorem: positive and right only if the mesh is closed and faces outward.
+/// Volume by the divergence theorem. It is positive and exact only if the mesh is closed and faces
+/// outward.
 double signed_volume(const Mesh& mesh) {
   double volume = 0.0;
   for (const glm::uvec3& t : mesh.triangles) {
@@ -41,7 +42,7 @@ TEST(MeshBuilder, BoxIsClosedAndFacesOutward) {
   expect_normals_agree(box);
 }
 
-TEST(MeshBuilder, LatheOfACircleIsABall) {
+TEST(MeshBuilder, LatheOfASemicircleIsASphere) {
   MeshBuilder builder;
   MeshBuilder::Lathe shape{.profile = {}, .segments = 96, .foot = {5, 0, -2}};
   for (int i = 0; i <= 64; ++i) {
@@ -67,21 +68,21 @@ TEST(MeshBuilder, LatheKeepsSharpEdges) {
   }
 }
 
-// Wall 2 w x (top - spring) x depth less half a disc of the arch.
-TEST(MeshBuilder, ArchHasTheVolumeOfItsWallLessTheOpening) {
+// The volume is 2 half_width * (top - spring) * depth minus half a disc of the arch.
+TEST(MeshBuilder, ArchHasTheVolumeOfAWallMinusItsOpening) {
   MeshBuilder builder;
   const MeshBuilder::Arch shape{
       .half_width = 2, .radius = 1, .spring = 3, .top = 5, .depth = 0.5f, .segments = 96};
   builder.arch(shape);
   const Mesh arch = builder.take("arch", 0);
-  // The piece over the opening has no top, where it carries a floor, and no ends, where it meets
-  // the sides: their parts of the integral are height * area / 3 and radius * area / 3.
+  // The part above the opening has no top and no ends, because a floor and the sides cover them.
+  // Their parts of the integral are height * area / 3 and radius * area / 3.
   const double top = 5.0 * (2.0 * 0.5) / 3.0, ends = 2.0 * 1.0 * (2.0 * 0.5) / 3.0;
   EXPECT_NEAR(signed_volume(arch) + top + ends, 4.0 * 2.0 * 0.5 - 0.25 * glm::pi<double>(), 1e-3);
   expect_normals_agree(arch);
 }
 
-TEST(MeshBuilder, PictureHangsUpright) {
+TEST(MeshBuilder, PictureTextureIsUpright) {
   MeshBuilder builder;
   builder.picture({-1, 1, 0}, {2, 0, 0}, {0, -2, 0});
   const Mesh canvas = builder.take("canvas", 0);

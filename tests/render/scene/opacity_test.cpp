@@ -10,7 +10,7 @@
 namespace eigenlight {
 namespace {
 
-/// Round holes of some texels' width.
+/// A texture with round holes of a few texels.
 Texture dotted(Extent extent) {
   Texture texture{"dotted", extent, std::vector<std::uint8_t>(4 * extent.pixels(), 255)};
   for (int y = 0; y < extent.height; ++y) {
@@ -24,7 +24,7 @@ Texture dotted(Extent extent) {
   return texture;
 }
 
-TEST(OpacityMap, NoPointBetweenTheCornersSaysOtherwise) {
+TEST(OpacityMap, AllPointsOfATriangleHaveItsOpacity) {
   const Texture texture = dotted({64, 48});
   const float cutoff = 0.5f;
   const OpacityMap map(texture, cutoff);
@@ -49,7 +49,7 @@ TEST(OpacityMap, NoPointBetweenTheCornersSaysOtherwise) {
   for (const int n : count) EXPECT_GT(n, 20);
 }
 
-TEST(OpacityMap, TrianglesThatRepeatTheTextureAreJudgedByAllOfIt) {
+TEST(OpacityMap, RepeatingTrianglesCoverTheWholeTexture) {
   Texture texture{"plain", {8, 8}, std::vector<std::uint8_t>(256, 255)};
   const std::array<glm::vec2, 3> wide{{{0, 0}, {7, 0}, {0, 5}}};
   EXPECT_EQ(OpacityMap(texture, 0.5f).between(wide), Opacity::kSolid);
@@ -59,7 +59,7 @@ TEST(OpacityMap, TrianglesThatRepeatTheTextureAreJudgedByAllOfIt) {
   EXPECT_EQ(OpacityMap(texture, 0.5f).between(wide), Opacity::kHole);
 }
 
-TEST(OpacityMap, NothingIsCertainOfCoordinatesThatAreNotNumbers) {
+TEST(OpacityMap, NonFiniteCoordinatesGiveMixed) {
   const Texture texture = dotted({16, 16});
   const float nan = std::numeric_limits<float>::quiet_NaN();
   for (const float bad : {nan, std::numeric_limits<float>::infinity()}) {

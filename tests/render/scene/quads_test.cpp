@@ -17,7 +17,7 @@ std::vector<std::uint32_t> all(const Mesh& mesh) {
   return triangles;
 }
 
-/// A wavy grid whose triangles start at corners of their own choice and come in any order.
+/// A wavy grid whose triangles start at random corners and come in random order.
 Mesh shuffled_grid(int side, std::uint32_t seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> height(-0.3f, 0.3f);
@@ -45,7 +45,7 @@ glm::vec3 place(const Mesh& mesh, const Quads::Point& p) {
          p.v * mesh.positions[t.z];
 }
 
-TEST(Quads, EveryPointIsThatOfItsTriangle) {
+TEST(Quads, QuadPointsMatchTheirTriangles) {
   for (std::uint32_t seed = 0; seed < 5; ++seed) {
     const Mesh mesh = shuffled_grid(6, seed);
     const Quads quads(mesh, all(mesh));
@@ -59,7 +59,7 @@ TEST(Quads, EveryPointIsThatOfItsTriangle) {
       for (int i = 0; i < 40; ++i) {
         const float u = unit(random), v = unit(random);
         const bool beyond = u + v > 1.0f;
-        if (beyond && c.z == c.w) continue;  // a triangle alone
+        if (beyond && c.z == c.w) continue;  // the quad holds a single triangle
         const glm::vec3 expected =
             beyond ? (u + v - 1.0f) * at[c.z] + (1.0f - u) * at[c.w] + (1.0f - v) * at[c.y]
                    : (1.0f - u - v) * at[c.x] + u * at[c.y] + v * at[c.w];
@@ -72,7 +72,7 @@ TEST(Quads, EveryPointIsThatOfItsTriangle) {
   }
 }
 
-TEST(Quads, OnlyTheChosenTrianglesAreThere) {
+TEST(Quads, QuadsContainTheSelectedTrianglesOnly) {
   const Mesh mesh = shuffled_grid(4, 1);
   const std::vector<std::uint32_t> chosen{3, 7, 8, 20, 31};
   const Quads quads(mesh, chosen);
@@ -85,7 +85,7 @@ TEST(Quads, OnlyTheChosenTrianglesAreThere) {
   EXPECT_EQ(met, std::multiset<std::uint32_t>(chosen.begin(), chosen.end()));
 }
 
-TEST(Quads, TrianglesThatTurnAgainstEachOtherStayAlone) {
+TEST(Quads, TrianglesOfOppositeOrientationAreNotPaired) {
   Mesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
   mesh.triangles = {{0, 1, 2}, {1, 2, 3}};
