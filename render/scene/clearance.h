@@ -1,4 +1,4 @@
-// How far a point is from the nearest surface.
+// Distance from a point to the nearest surface of a scene.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -9,27 +9,27 @@
 
 namespace eigenlight {
 
-/// Exact distances to the surfaces of a scene at rest: meshes of all kinds, area rects and sphere
-/// lights. A bounding volume hierarchy in world space; queries are safe from several threads.
+/// Exact distances to the surfaces of a scene in its rest pose: all meshes, rectangle lights and
+/// sphere lights. Uses a bounding volume hierarchy in world space. Queries may run on several
+/// threads.
 class Clearance {
  public:
   explicit Clearance(const Scene& scene);
 
-  /// Distance from `point` to the nearest surface, or `limit` if there is none nearer. `limit` may
-  /// be +inf. Inside a sphere light the distance is negative.
+  /// Distance from `point` to the nearest surface, at most `limit`, which may be +inf. Negative
+  /// inside a sphere light.
   [[nodiscard]] float distance(const glm::vec3& point, float limit) const;
 
-  /// How far a ball that grows from nothing at `origin`, with radius `slope` times its distance,
-  /// can move along the unit `direction` before it touches a surface; at most `limit`. Every
-  /// smaller distance is free, and so is the whole cone up to there: what flies in it is seen from
-  /// `origin`. Sphere tracing (Hart 1996) of a cone.
+  /// Length of the cone from `origin` along the unit vector `direction` that touches no surface, at
+  /// most `limit`. At distance d the radius of the cone is `slope` * d. Objects inside the cone are
+  /// visible from `origin`. Sphere tracing (Hart 1996) of a cone.
   struct Cone {
     glm::vec3 origin{0.0f}, direction{0, 0, 1};
     float slope = 0.1f;
   };
   [[nodiscard]] float free_travel(const Cone& cone, float limit) const;
 
-  [[nodiscard]] std::size_t triangle_count() const { return triangles_.size(); }
+  /// Bounding box of all triangles.
   [[nodiscard]] const glm::vec3& lower() const { return lower_; }
   [[nodiscard]] const glm::vec3& upper() const { return upper_; }
 
@@ -39,8 +39,8 @@ class Clearance {
   };
   struct Node {
     glm::vec3 lower{0.0f}, upper{0.0f};
-    int first = 0;  ///< triangle of a leaf, or left child; the right child follows it
-    int count = 0;  ///< triangles; 0 in inner nodes
+    int first = 0;  ///< leaf: first triangle; inner node: left child, followed by the right child
+    int count = 0;  ///< leaf: number of triangles; inner node: 0
   };
 
   void add(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c);
