@@ -3,10 +3,10 @@
 
 #include <cmath>
 
+#include "frame/instruction_sets.h"
 #include "frame/tiles.h"
 #include "sequences/stress/measures.h"
 #include "sequences/stress/stress_case.h"
-#include "sequences/stress/targets.h"
 
 namespace eigenlight {
 namespace {

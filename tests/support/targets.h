@@ -2,27 +2,20 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <functional>
+#include <string>
+
+#include "frame/instruction_sets.h"
 
 namespace eigenlight {
 
-/// Calls body() with Highway bound to each target in turn, and names the target in failures. The
-/// choice of the machine is restored afterwards, also after an exception.
+/// Calls body() for each instruction set, whose name failures show.
 inline void for_each_target(const std::function<void()>& body) {
-  struct Restore {
-    ~Restore() {
-      hwy::SetSupportedTargetsForTest(0);
-      hwy::GetChosenTarget().DeInit();
-    }
-  } restore;
-  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    const ::testing::ScopedTrace trace(__FILE__, __LINE__, hwy::TargetName(target));
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(target);
+  for_each_instruction_set([&](std::string_view name) {
+    const testing::ScopedTrace trace(__FILE__, __LINE__, std::string(name));
     body();
-  }
+  });
 }
 
 }  // namespace eigenlight

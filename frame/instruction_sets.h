@@ -6,8 +6,8 @@
 
 namespace eigenlight {
 
-/// Calls body(name) with all kernels bound to each instruction set that this machine and this build
-/// have, in turn. The machine's own choice is restored afterwards, after an exception too.
+/// Binds all kernels to each instruction set that this machine and this build have, in turn, and
+/// calls body(name). The machine's own choice is restored afterwards, also after an exception.
 void for_each_instruction_set(const std::function<void(std::string_view)>& body);
 
 }  // namespace eigenlight

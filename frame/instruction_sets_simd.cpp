@@ -1,6 +1,6 @@
 #include <hwy/targets.h>
 
-#include "sequences/stress/targets.h"
+#include "frame/instruction_sets.h"
 
 namespace eigenlight {
 
