@@ -56,6 +56,11 @@ inline std::vector<std::vector<double>> inverse(std::vector<std::vector<double>>
   return a;
 }
 
+inline double gram(const TileSums& total, std::size_t i, std::size_t j) {
+  const int low = static_cast<int>(std::min(i, j)), high = static_cast<int>(std::max(i, j));
+  return total.gram[static_cast<std::size_t>(packed(low, high))];
+}
+
 /// Variance of <V_i, u - V_0> about the gain 1 + delta.
 inline double innovation_variance(const TileSums& total, std::size_t i, double delta) {
   const double pixels = total.gram[0] * total.gram[0] / total.scatter_00[0];
@@ -71,54 +76,70 @@ struct Shrinkage {
   std::span<const double> expected;
 };
 
-/// The K delta_k of one window. All bases must have energy and be independent.
+/// Share of a delta of the given variance that is kept; `expected` is its mean square, or 0.
+inline double kept_share(const ShrinkOptions& options, double delta, double variance,
+                         double expected) {
+  if (delta == 0.0) return 0.0;
+  const double kept = std::max(0.0, 1.0 - options.noise * variance / (delta * delta));
+  return expected > 0.0 ? std::max(kept, expected / (expected + variance)) : kept;
+}
+
+/// The K delta_k of one window; 0 for bases without energy. A ridge of 1e-6 of its energy on each
+/// basis but the first keeps nearly parallel ones apart.
 inline std::vector<double> coefficients(const TileSums& total, const Shrinkage& shrinkage,
                                         int bases) {
-  const auto n = static_cast<std::size_t>(bases);
-  std::vector<std::vector<double>> gram(n, std::vector<double>(n));
-  for (int i = 0; i < bases; ++i) {
-    for (int j = 0; j < bases; ++j) {
-      gram[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] =
-          total.gram[static_cast<std::size_t>(packed(std::min(i, j), std::max(i, j)))];
-    }
+  std::vector<double> delta(static_cast<std::size_t>(bases), 0.0);
+  std::vector<std::size_t> used;
+  for (std::size_t k = 0; k < delta.size(); ++k) {
+    if (gram(total, k, k) > 1e-10 * total.gram[0]) used.push_back(k);
   }
-  const auto inverted = inverse(gram);
-  std::vector<double> delta(n, 0.0);
-  for (std::size_t k = 0; k < n; ++k) {
-    for (std::size_t i = 0; i < n; ++i) delta[k] += inverted[k][i] * total.innovation[i];
+  if (!(total.gram[0] > 0.0)) return delta;
+  const std::size_t rank = used.size();
+  std::vector<std::vector<double>> matrix(rank, std::vector<double>(rank));
+  for (std::size_t a = 0; a < rank; ++a) {
+    for (std::size_t b = 0; b < rank; ++b) matrix[a][b] = gram(total, used[a], used[b]);
+    if (a > 0) matrix[a][a] *= 1.0 + 1e-6;
   }
-  const double fitted = delta[0];
-  for (std::size_t k = 0; k < n; ++k) {
+  const auto inverted = inverse(matrix);
+  std::vector<double> fitted(rank, 0.0);
+  for (std::size_t a = 0; a < rank; ++a) {
+    for (std::size_t b = 0; b < rank; ++b) fitted[a] += inverted[a][b] * total.innovation[used[b]];
+  }
+  for (std::size_t a = 0; a < rank; ++a) {
     double variance = 0.0;
-    for (std::size_t i = 0; i < n; ++i) {
-      variance += inverted[k][i] * inverted[k][i] * innovation_variance(total, i, fitted);
+    for (std::size_t b = 0; b < rank; ++b) {
+      variance += inverted[a][b] * inverted[a][b] * innovation_variance(total, used[b], fitted[0]);
     }
-    if (delta[k] == 0.0) continue;
-    double kept = std::max(0.0, 1.0 - shrinkage.options.noise * variance / (delta[k] * delta[k]));
-    if (!shrinkage.expected.empty()) {
-      kept = std::max(kept, shrinkage.expected[k] / (shrinkage.expected[k] + variance));
-    }
-    delta[k] *= kept;
-    if (k == 0) delta[k] = std::max(delta[k], -1.0);
+    const std::size_t k = used[a];
+    const double expected = shrinkage.expected.empty() ? 0.0 : shrinkage.expected[k];
+    delta[k] = fitted[a] * kept_share(shrinkage.options, fitted[a], variance, expected);
   }
+  delta[0] = std::max(delta[0], -1.0);
   return delta;
 }
 
-/// c_k at a pixel: bilinear between tile centers, constant beyond the outermost.
-inline double coefficient_at(const CoefficientField& field, int x, int y, int k) {
-  const TileGrid& grid = field.grid();
+/// value(i) of the tiles of a grid at a pixel: bilinear between tile centers, constant beyond the
+/// outermost.
+template <typename Value>
+double between_tiles(const TileGrid& grid, int x, int y, const Value& value) {
   const auto axis = [](int at, int tiles) {
-    const double t = (at + 0.5) / kCoefficientTile - 0.5;
-    return std::clamp(t, 0.0, static_cast<double>(tiles - 1));
+    return std::clamp((at + 0.5) / kCoefficientTile - 0.5, 0.0, tiles - 1.0);
   };
   const double tx = axis(x, grid.columns()), ty = axis(y, grid.rows());
-  double sum = k == 0 ? 1.0 : 0.0;
+  double sum = 0.0;
   for (int i = 0; i < grid.count(); ++i) {
     const double wx = std::max(0.0, 1.0 - std::abs(tx - i % grid.columns()));
     const double wy = std::max(0.0, 1.0 - std::abs(ty - i / grid.columns()));
-    sum += wx * wy * static_cast<double>(field.tile(i)[static_cast<std::size_t>(k)]);
+    if (wx * wy > 0.0) sum += wx * wy * static_cast<double>(value(i));
   }
   return sum;
+}
+
+/// c_k at a pixel.
+template <typename Field>
+double coefficient_at(const Field& field, int x, int y, int k) {
+  const auto offset = [&](int i) { return field.tile(i)[static_cast<std::size_t>(k)]; };
+  return (k == 0 ? 1.0 : 0.0) + between_tiles(field.grid(), x, y, offset);
 }
 
 }  // namespace eigenlight::reference

@@ -43,4 +43,9 @@ inline Edge edge(const FrameInput& frame, const TapOptions& options, glm::ivec2 
   return out;
 }
 
+/// Age of a pixel after shorten_ages(); `longest` is that of its kind.
+inline double shortened_age(double age, double samples, double longest) {
+  return std::min(age, std::max(longest, samples));
+}
+
 }  // namespace eigenlight::reference

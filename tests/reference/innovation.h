@@ -13,9 +13,10 @@ struct Innovation {
   double variance = 0.0;
 };
 
-/// `variance` is that of the history.
-inline Innovation innovation(const InnovationInputs& in, const InnovationOptions& options,
-                             glm::ivec2 p, double variance) {
+/// `variance` is that of the history; `In` is InnovationInputs, or the same in double.
+template <typename In>
+Innovation innovation(const In& in, const InnovationOptions& options, glm::ivec2 p,
+                      double variance) {
   double count = 0.0, sum = 0.0;
   const auto over_window = [&](const auto& visit) {
     for (int y = p.y - 4; y <= p.y + 4; ++y) {

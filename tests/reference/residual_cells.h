@@ -21,7 +21,9 @@ struct Cell {
   std::array<double, 3> mean{};
 };
 
-inline Cell cell(const CorrectionInputs& in, int cx, int cy) {
+/// `In` is CorrectionInputs, or the same in double.
+template <typename In>
+Cell cell(const In& in, int cx, int cy) {
   Cell out;
   const Extent extent = in.guides.extent();
   const std::uint32_t id = in.guides.surface.id(2 * cx, 2 * cy);
@@ -46,9 +48,10 @@ inline Cell cell(const CorrectionInputs& in, int cx, int cy) {
   return out;
 }
 
-/// What pixel (x, y) gets of the cells around.
-inline std::array<double, 3> spread(const ResidualCells& cells, const CorrectionInputs& in, int x,
-                                    int y) {
+/// What pixel (x, y) gets of the cells around: `cells` as a frame, and mean(channel, x, y) of each.
+template <typename Mean, typename In>
+std::array<double, 3> spread(const FrameInput& cells, const Mean& mean, const In& in, int x,
+                             int y) {
   if (std::isnan(in.innovation(x, y))) return {};
   const Camera& camera = in.guides.camera;
   const glm::dvec3 normal = normal_at(in.guides, x, y);
@@ -67,13 +70,12 @@ inline std::array<double, 3> spread(const ResidualCells& cells, const Correction
     for (int i = 0; i < 2; ++i) {
       const int cx = std::clamp(x / 2 + i * (2 * (x % 2) - 1), 0, cells.extent().width - 1);
       const int cy = std::clamp(y / 2 + j * (2 * (y % 2) - 1), 0, cells.extent().height - 1);
-      if (cells.guides.surface.id(cx, cy) != in.guides.surface.id(x, y)) continue;
-      const double off =
-          std::abs(cells.guides.surface.depth(cx, cy) * along(2 * cx, 2 * cy) - plane);
-      const double cosine = glm::dot(normal, normal_at(cells.guides, cx, cy));
+      if (cells.surface.id(cx, cy) != in.guides.surface.id(x, y)) continue;
+      const double off = std::abs(cells.surface.depth(cx, cy) * along(2 * cx, 2 * cy) - plane);
+      const double cosine = glm::dot(normal, normal_at(cells, cx, cy));
       const bool same = off <= taps.plane_distance * depth && cosine >= taps.normal_cosine;
       const double weight = (i == 0 ? 0.75 : 0.25) * (j == 0 ? 0.75 : 0.25) * (same ? 1.0 : 1e-3);
-      for (std::size_t c = 0; c < 3; ++c) sum[c] += weight * cells.mean[c](cx, cy);
+      for (std::size_t c = 0; c < 3; ++c) sum[c] += weight * mean(c, cx, cy);
       total += weight;
     }
   }

@@ -20,8 +20,10 @@ struct SumPixel {
   double weight = 0.0, r[3] = {};
 };
 
-inline SumPixel sum_pixel(const SumInputs& in, int x, int y) {
-  const BasisField& v = in.bases;
+/// `In` is SumInputs, or the same in double.
+template <typename In>
+SumPixel sum_pixel(const In& in, int x, int y) {
+  const auto& v = in.bases;
   SumPixel pixel;
   bool finite = true;
   for (int c = 0; c < 3; ++c) {
@@ -32,7 +34,8 @@ inline SumPixel sum_pixel(const SumInputs& in, int x, int y) {
   const double n = v.age(x, y);
   if (!(n > 0.0) || !finite) return {};
   const double steady = luminance(v.value(x, y, 0, 0), v.value(x, y, 1, 0), v.value(x, y, 2, 0));
-  pixel.weight = n / (n + 1.0) / (in.variance(x, y) + 0.01 * steady * steady);
+  const double expected = in.variance(x, y) + 0.01 * steady * steady;
+  pixel.weight = expected > 1e-30 ? n / (n + 1.0) / expected : 0.0;
   return pixel;
 }
 
@@ -43,7 +46,8 @@ inline double sum_excess(const SumPixel& pixel) {
 }
 
 /// The pixels of a tile, row by row, few outliers held back.
-inline std::vector<SumPixel> sum_pixels(const SumInputs& in, const Rect& tile) {
+template <typename In>
+std::vector<SumPixel> sum_pixels(const In& in, const Rect& tile) {
   std::vector<SumPixel> pixels;
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0; x < tile.x1; ++x) pixels.push_back(sum_pixel(in, x, y));
@@ -58,34 +62,40 @@ inline std::vector<SumPixel> sum_pixels(const SumInputs& in, const Rect& tile) {
   return pixels;
 }
 
-inline TileSums tile_sums(const SumInputs& in, const Rect& tile) {
+/// Adds a pixel of weight m and residual r.
+template <typename In>
+void add_pixel(const In& in, int x, int y, const SumPixel& pixel, TileSums& sums) {
+  const auto dot = [&](int i, int j) {
+    double sum = 0.0;
+    for (int c = 0; c < 3; ++c) {
+      sum += static_cast<double>(in.bases.value(x, y, c, i)) *
+             static_cast<double>(in.bases.value(x, y, c, j));
+    }
+    return sum;
+  };
+  const double m = pixel.weight;
+  sums.pixels += 1.0;
+  for (int j = 0; j < std::min(in.bases.bases(), in.active); ++j) {
+    double along = 0.0;
+    for (int c = 0; c < 3; ++c) along += in.bases.value(x, y, c, j) * pixel.r[c];
+    const double first = dot(j, 0);
+    const auto at = static_cast<std::size_t>(j);
+    sums.innovation[at] += m * along;
+    sums.scatter_rr[at] += m * m * along * along;
+    sums.scatter_r0[at] += m * m * along * first;
+    sums.scatter_00[at] += m * m * first * first;
+    for (int i = 0; i <= j; ++i) sums.gram[static_cast<std::size_t>(packed(i, j))] += m * dot(i, j);
+  }
+}
+
+template <typename In>
+TileSums tile_sums(const In& in, const Rect& tile) {
   TileSums sums;
-  const BasisField& v = in.bases;
   const std::vector<SumPixel> pixels = sum_pixels(in, tile);
   auto next = pixels.begin();
   for (int y = tile.y0; y < tile.y1; ++y) {
-    for (int x = tile.x0; x < tile.x1; ++x) {
-      const auto& [m, r] = *next++;
-      if (!(m > 0.0)) continue;
-      sums.pixels += 1.0;
-      for (int j = 0; j < v.bases(); ++j) {
-        double along = 0.0, first = 0.0;
-        for (int c = 0; c < 3; ++c) {
-          along += v.value(x, y, c, j) * r[c];
-          first += static_cast<double>(v.value(x, y, c, j)) * v.value(x, y, c, 0);
-        }
-        sums.innovation[static_cast<std::size_t>(j)] += m * along;
-        sums.scatter_rr[static_cast<std::size_t>(j)] += m * m * along * along;
-        sums.scatter_r0[static_cast<std::size_t>(j)] += m * m * along * first;
-        sums.scatter_00[static_cast<std::size_t>(j)] += m * m * first * first;
-        for (int i = 0; i <= j; ++i) {
-          double dot = 0.0;
-          for (int c = 0; c < 3; ++c) {
-            dot += static_cast<double>(v.value(x, y, c, i)) * v.value(x, y, c, j);
-          }
-          sums.gram[static_cast<std::size_t>(packed(i, j))] += m * dot;
-        }
-      }
+    for (int x = tile.x0; x < tile.x1; ++x, ++next) {
+      if (next->weight > 0.0) add_pixel(in, x, y, *next, sums);
     }
   }
   return sums;

@@ -15,10 +15,12 @@ struct Updated {
   double age = 0.0;
 };
 
-inline Updated update(const UpdateInputs& in, const BasisField& old, glm::ivec2 p) {
+/// `In` is UpdateInputs and `Field` BasisField, or the same in double.
+template <typename In, typename Field>
+Updated update(const In& in, const Field& old, glm::ivec2 p) {
   Updated out;
   const int x = p.x, y = p.y;
-  const bool known = in.old_age(x, y) > 0.0f, usable = in.samples(x, y) > 0.0f;
+  const bool known = in.old_age(x, y) > 0, usable = in.samples(x, y) > 0;
   const double s = in.samples(x, y);
   const double n = known ? std::max(0.0, static_cast<double>(in.new_age(x, y)) - s) : 0.0;
   out.age = known || usable ? static_cast<double>(in.new_age(x, y)) : 0.0;
@@ -31,8 +33,8 @@ inline Updated update(const UpdateInputs& in, const BasisField& old, glm::ivec2 
     q[at] = coefficient_at(in.learning_rates, x, y, k);
     h += c[at] * q[at];
   }
-  h = std::max(h,
-               1.0);  // as it is for every c and q that belong together; between tiles they may not
+  // h is at least 1 for every c and q of one tile, but may be less between tiles.
+  h = std::max(h, 1.0);
 
   for (std::size_t channel = 0; channel < 3; ++channel) {
     const double correction = known && in.correction != nullptr

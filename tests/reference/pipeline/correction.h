@@ -1,143 +1,136 @@
-// Fireflies and the smoothed innovation, in double.
+// The smoothed innovation in double: gates of tiles, and cells between them.
 #pragma once
 
+#include <algorithm>
 #include <limits>
+#include <vector>
 
 #include "temporal/change/correction.h"
-#include "temporal/samples/firefly_bound.h"
 #include "tests/reference/atrous.h"
-#include "tests/reference/pipeline/coefficients.h"
+#include "tests/reference/coefficients.h"
+#include "tests/reference/firefly_bound.h"
+#include "tests/reference/residual_cells.h"
 
 namespace eigenlight::twin {
 
-/// What the stages between prediction and update share.
-struct Residual {
+using reference::Image;
+using Light = reference::LightImages;
+
+/// Planes that the stages between prediction and update share.
+struct Residual : reference::FireflyImages {
   explicit Residual(Extent extent)
-      : prediction(make_light(extent)),
-        light(make_light(extent)),
-        correction(make_light(extent)),
-        samples(extent),
-        confirmed(extent),
-        value(extent),
-        age(extent),
-        variance(extent),
-        brightness({(extent.width + 7) / 8, (extent.height + 7) / 8}),
-        change(extent) {}
-  /// v (1/s + 1/n)
-  [[nodiscard]] double noise(int x, int y) const {
-    return variance(x, y) * (1.0 / samples(x, y) + 1.0 / age(x, y));
-  }
-  Light prediction, light, correction;
-  Image samples, confirmed, value, age, variance;
-  Image brightness;   // of blocks
-  TileValues change;  // how surely the light of each tile changed
+      : FireflyImages(extent),
+        correction(reference::make_light(extent)),
+        change(TileGrid(extent, kCoefficientTile, kCoefficientTile)) {}
+
+  Light correction;
+  PerTile<double> change;  // how surely the light of each tile changed
 };
 
-/// Visits the pixels of a block.
-template <typename Body>
-void each_in_block(Extent extent, int bx, int by, Body body) {
-  for (int y = 8 * by; y < std::min(8 * by + 8, extent.height); ++y) {
-    for (int x = 8 * bx; x < std::min(8 * bx + 8, extent.width); ++x) body(x, y);
+/// CorrectionInputs in double.
+struct CellInputs {
+  const FrameInput& guides;
+  const Light& residual;
+  const Image &innovation, &age, &samples, &variance;
+};
+
+/// Cells with their geometry, mean residual (0, 1, 2) and its noise (3).
+struct Cells {
+  explicit Cells(Extent pixels) : geometry(pixels), image(geometry.extent()) {}
+  ResidualCells geometry;  // guides alone
+  reference::AtrousImage image;
+  [[nodiscard]] double& value(std::size_t c, int x, int y) {
+    return image.values[c][image.index(x, y)];
   }
+};
+
+inline void load_cell(const CellInputs& in, int x, int y, Cells& cells) {
+  const reference::Cell cell = reference::cell(in, x, y);
+  const GBuffer& pixels = in.guides.surface;
+  GBuffer& surface = cells.geometry.guides.surface;
+  surface.id(x, y) = cell.id;
+  surface.depth(x, y) =
+      cell.count > 0.0 ? pixels.depth(2 * x, 2 * y) : std::numeric_limits<float>::infinity();
+  for (std::size_t c = 0; c < 3; ++c) {
+    surface.normal[c](x, y) = pixels.normal[c](2 * x, 2 * y);
+    cells.value(c, x, y) = cell.mean[c];
+  }
+  cells.value(3, x, y) = cell.noise;
 }
 
-inline double firefly_sigma(const Residual& r, int x, int y) {
-  const double expected = 0.1 * luminance(r.prediction, x, y);
-  return std::sqrt(r.noise(x, y) + expected * expected);
-}
-
-/// Counts of blocks, before any of them changes.
-inline std::vector<FireflyBlock> firefly_blocks(const Residual& r, const FireflyOptions& options) {
-  std::vector<FireflyBlock> blocks;
-  r.brightness.each([&](int bx, int by) {
-    FireflyBlock block;
-    each_in_block(r.value.extent, bx, by, [&](int x, int y) {
-      const bool confirmed = r.confirmed(x, y) > 0.0, usable = r.samples(x, y) > 0.0;
-      block.confirmed += confirmed ? 1 : 0;
-      block.outliers +=
-          confirmed && std::abs(r.value(x, y)) > options.deviations * firefly_sigma(r, x, y) ? 1
-                                                                                             : 0;
-      block.usable += usable ? 1 : 0;
-      block.fresh += usable && !confirmed ? 1 : 0;
-      block.root += usable ? std::sqrt(std::abs(luminance(r.light, x, y))) : 0.0;
-    });
-    blocks.push_back(block);
+/// mean f g, with f averaged over those of 3 x 3 cells that have a confirmed pixel.
+inline void weigh_cells(const CorrectionOptions& options, const TileGrid& grid,
+                        const PerTile<double>& gate, Cells& cells) {
+  Image factor(cells.image.extent);
+  factor.each([&](int x, int y) {
+    const double mean = cells.image.luminance(x, y);
+    const double chance = options.significance * cells.value(3, x, y);
+    factor(x, y) = mean * mean > chance ? 1.0 - chance / (mean * mean) : 0.0;
   });
-  return blocks;
-}
-
-inline void bound_pixel(const FireflyOptions& options, bool steady, double brightness, int x, int y,
-                        Residual& r) {
-  if (r.confirmed(x, y) > 0.0) {
-    const double size = std::abs(r.value(x, y)), sigma = firefly_sigma(r, x, y);
-    if (!steady || size <= options.deviations * sigma) return;
-    const double n = r.age(x, y), s = r.samples(x, y);
-    const double step =
-        std::min((n + s) / (s * std::sqrt(n)), static_cast<double>(options.deviations));
-    for (std::size_t c = 0; c < 3; ++c) {
-      const double from = r.prediction[c](x, y);
-      r.light[c](x, y) = from + step * sigma / size * (r.light[c](x, y) - from);
-    }
-    r.value(x, y) = r.confirmed(x, y) = 0.0;
-  } else if (r.samples(x, y) > 0.0) {
-    const double size = std::abs(luminance(r.light, x, y));
-    if (size <= brightness) return;
-    for (auto& plane : r.light) plane(x, y) *= brightness / size;
-  }
-}
-
-inline void bound(const FireflyOptions& options, Residual& r) {
-  const std::vector<FireflyBlock> blocks = firefly_blocks(r, options);
-  r.brightness.each([&](int bx, int by) {
-    FireflyBlock sum;
-    r.brightness.each_around({bx, by}, 1, [&](int i, int j) {
-      const FireflyBlock& block = blocks[r.brightness.index(i, j)];
-      sum.confirmed += block.confirmed;
-      sum.outliers += block.outliers;
-      sum.usable += block.usable;
-      sum.fresh += block.fresh;
-      sum.root += block.root;
+  factor.each([&](int x, int y) {
+    double sum = 0.0, count = 0.0;
+    factor.each_around({x, y}, 1, [&](int i, int j) {
+      sum += factor(i, j);
+      count += cells.geometry.guides.surface.id(i, j) != 0 ? 1.0 : 0.0;
     });
-    const double mean = sum.usable > 0 ? sum.root / sum.usable : 0.0;
-    const double brightness = options.times * mean * mean;
-    const auto few = [](const FireflyBlock& block, double share) {
-      return block.outliers <= share * block.confirmed;
-    };
-    const double share = static_cast<double>(options.share);
-    const bool steady = few(sum, share) && few(blocks[r.brightness.index(bx, by)], 2.0 * share);
-    r.brightness(bx, by) = sum.fresh > 0 ? brightness : std::numeric_limits<double>::infinity();
-    each_in_block(r.value.extent, bx, by,
-                  [&](int x, int y) { bound_pixel(options, steady, brightness, x, y, r); });
+    const double open =
+        reference::between_tiles(grid, 2 * x, 2 * y, [&](int tile) { return gate[tile]; });
+    for (std::size_t c = 0; c < 3; ++c) cells.value(c, x, y) *= sum / std::max(count, 1.0) * open;
   });
 }
 
 /// g - the gate of each tile, from the share of significant blocks around.
-inline TileValues open_gates(const Residual& r) {
-  TileValues gate(r.value.extent), all(r.value.extent), significant(r.value.extent);
+inline PerTile<double> open_gates(const Residual& r, const TileGrid& grid) {
+  PerTile<double> gate(grid), all(grid), significant(grid);
   r.brightness.each([&](int bx, int by) {
     double sum = 0.0, noise = 0.0, count = 0.0;
-    each_in_block(r.value.extent, bx, by, [&](int x, int y) {
-      if (!(r.confirmed(x, y) > 0.0)) return;
-      sum += r.value(x, y);
+    reference::each_in_block(r.age.extent(), bx, by, [&](int x, int y) {
+      if (std::isnan(r.innovation(x, y))) return;
+      sum += r.innovation(x, y);
       noise += r.noise(x, y);
       count += 1.0;
     });
     if (count < 16.0) return;
-    const int tile = by / 4 * gate.grid.columns() + bx / 4;
+    const int tile = by / 4 * grid.columns() + bx / 4;
     all[tile] += 1.0;
     significant[tile] += sum * sum > 9.0 * noise ? 1.0 : 0.0;
   });
-  const int columns = gate.grid.columns();
-  const Image tiles({columns, gate.grid.rows()});
+  const Image tiles({grid.columns(), grid.rows()});
   tiles.each([&](int tx, int ty) {
     double a = 0.0, s = -1.0;
     tiles.each_around({tx, ty}, 1, [&](int i, int j) {
-      a += all[j * columns + i];
-      s += significant[j * columns + i];
+      a += all[j * grid.columns() + i];
+      s += significant[j * grid.columns() + i];
     });
-    gate[ty * columns + tx] = a > 0.0 ? std::clamp((s / a - 0.03) / 0.04, 0.0, 1.0) : 0.0;
+    gate[ty * grid.columns() + tx] = a > 0.0 ? std::clamp((s / a - 0.03) / 0.04, 0.0, 1.0) : 0.0;
   });
   return gate;
+}
+
+/// Correction::process(): fills r.correction, and takes its luminance from r.innovation.
+inline void correct(const CorrectionOptions& options, const FrameInput& frame, Residual& r) {
+  const Extent extent = r.age.extent();
+  const TileGrid grid(extent, kCoefficientTile, kCoefficientTile);
+  r.correction = reference::make_light(extent);
+  r.change = open_gates(r, grid);
+  if (std::all_of(r.change.begin(), r.change.end(), [](double g) { return g == 0.0; })) return;
+  const CellInputs in{frame, r.residual, r.innovation, r.age, r.samples, r.variance};
+  Cells cells(extent);
+  cells.geometry.set_camera(frame.camera);
+  Image(cells.image.extent).each([&](int x, int y) { load_cell(in, x, y, cells); });
+  const AtrousOptions filter{.passes = options.passes,
+                             .radius = 1,
+                             .luminance_sigmas = std::numeric_limits<float>::infinity()};
+  for (int pass = 0; pass < options.passes; ++pass) {
+    cells.image = reference::atrous_pass(cells.geometry.guides, filter, cells.image, 1 << pass);
+  }
+  weigh_cells(options, grid, r.change, cells);
+  const auto mean = [&](std::size_t c, int x, int y) { return cells.value(c, x, y); };
+  r.age.each([&](int x, int y) {
+    const auto given = reference::spread(cells.geometry.guides, mean, in, x, y);
+    for (std::size_t c = 0; c < 3; ++c) r.correction[c](x, y) = given[c];
+    r.innovation(x, y) -= reference::luminance(given[0], given[1], given[2]);
+  });
 }
 
 }  // namespace eigenlight::twin

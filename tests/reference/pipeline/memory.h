@@ -1,7 +1,10 @@
 // Twin of CoefficientHistory that takes and gives double; slots are born and retired as it is told.
 #pragma once
 
-#include "tests/reference/pipeline/coefficients.h"
+#include <vector>
+
+#include "temporal/bases/small_matrix.h"
+#include "tests/reference/image.h"
 
 namespace eigenlight::twin {
 
@@ -25,17 +28,18 @@ class Memory {
     for (int k = 0; k < bases_; ++k) last = in_use_[static_cast<std::size_t>(k)] ? k : last;
     return last + 1;
   }
-  [[nodiscard]] const SmallVector& expected(int tile) const {
-    return expected_[static_cast<std::size_t>(tile)];
+  /// Mean squares of delta_k.
+  [[nodiscard]] std::span<const double> expected(int tile) const {
+    return {expected_[static_cast<std::size_t>(tile)].data(), static_cast<std::size_t>(bases_)};
   }
 
   /// R <- lambda R + c c^T with c = (1, delta_1, ...), and q = (R / R_00 + ridge)^-1 c.
-  void learn(TileVectors& coefficients, TileVectors& learning_rates) {
+  void learn(const reference::Coefficients& coefficients, reference::Coefficients& learning_rates) {
     const int rank = active();
     for (int tile = 0; tile < static_cast<int>(information_.size()); ++tile) {
       SmallVector c = SmallVector::Zero(bases_);
       c[0] = 1.0;
-      for (int k = 1; k < rank; ++k) c[k] = coefficients[static_cast<std::size_t>(k)][tile];
+      for (int k = 1; k < rank; ++k) c[k] = coefficients.tile(tile)[static_cast<std::size_t>(k)];
       SmallMatrix& r = information_[static_cast<std::size_t>(tile)];
       r = (1.0 - 1.0 / 64.0) * r + c * c.transpose();
       SmallMatrix m = r.topLeftCorner(rank, rank) / r(0, 0);
@@ -45,8 +49,9 @@ class Memory {
         expected_[static_cast<std::size_t>(tile)][k] = used ? r(k, k) / r(0, 0) : 0.0;
       }
       const SmallVector q = m.ldlt().solve(SmallVector(c.head(rank)));
-      for (int k = 0; k < kMaxBases; ++k) {
-        learning_rates[static_cast<std::size_t>(k)][tile] = k < rank ? q[k] : 0.0;
+      learning_rates.tile(tile).fill(0.0);
+      for (int k = 0; k < rank; ++k) {
+        learning_rates.tile(tile)[static_cast<std::size_t>(k)] = q[k] - (k == 0 ? 1.0 : 0.0);
       }
     }
   }
