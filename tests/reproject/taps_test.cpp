@@ -7,9 +7,8 @@
 
 #include "frame/float_traps.h"
 #include "tests/reference/taps.h"
-#include "tests/support/extents.h"
+#include "tests/support/kernel_test.h"
 #include "tests/support/random_frames.h"
-#include "tests/support/targets.h"
 
 namespace eigenlight {
 namespace {
@@ -21,55 +20,51 @@ struct Count {
   int compared = 0, with_history = 0, without = 0, partial = 0;
 };
 
-// Compares every pixel with the twin, except where a decision hangs on float noise.
-Count compare_with_twin(const Frame& current, const Frame& before) {
-  const PreviousSurface previous{before.camera, before.surface};
-  const Extent extent = current.extent();
-  const TapOptions options;
-  Count count;
-  TapSegment taps;
-  for (int y = 0; y < extent.height; ++y) {
-    for (int x0 = 0; x0 < extent.width; x0 += kSegment) {
-      const Rect row{x0, y, std::min(x0 + kSegment, extent.width), y + 1};
-      compute_taps(current, previous, options, row, taps);
-      for (int x = row.x0; x < row.x1; ++x) {
-        const reference::Taps twin = reference::taps(current, previous, options, {x, y});
-        if (twin.margin < 1e-5) continue;
-        const auto i = static_cast<std::size_t>(x - x0);
-        int used = 0;
-        for (std::size_t t = 0; t < 4; ++t) {
-          // Weights are products of differences of pixel coordinates, over a sum of at least 0.01.
-          EXPECT_NEAR(taps.weight[t][i], twin.weight[t], 2e-5) << x << ", " << y << " tap " << t;
-          const glm::ivec2 tap = taps.tap(static_cast<int>(t), i);
-          EXPECT_TRUE(taps.weight[t][i] == 0.0f || extent.contains(tap.x, tap.y))
-              << x << ", " << y << " tap " << t;
-          used += twin.weight[t] > 0.0 ? 1 : 0;
-        }
-        ++count.compared;
-        ++(used > 0 ? count.with_history : count.without);
-        count.partial += used > 0 && used < 4 ? 1 : 0;
-      }
+// Compares the taps of one row with the reference, except where a decision hangs on float noise.
+void compare_row(const Frame& current, const PreviousSurface& previous, const Rect& row,
+                 const TapSegment& taps, Count& count) {
+  const int y = row.y0;
+  for (int x = row.x0; x < row.x1; ++x) {
+    const reference::Taps twin = reference::taps(current, previous, {}, {x, y});
+    if (twin.margin < 1e-5) continue;
+    const auto i = static_cast<std::size_t>(x - row.x0);
+    int used = 0;
+    for (std::size_t t = 0; t < 4; ++t) {
+      // Weights are products of differences of pixel coordinates, over a sum of at least 0.01.
+      EXPECT_NEAR(taps.weight[t][i], twin.weight[t], 2e-5) << x << ", " << y << " tap " << t;
+      const glm::ivec2 tap = taps.tap(static_cast<int>(t), i);
+      EXPECT_TRUE(taps.weight[t][i] == 0.0f || current.extent().contains(tap.x, tap.y))
+          << x << ", " << y << " tap " << t;
+      used += twin.weight[t] > 0.0 ? 1 : 0;
     }
+    ++count.compared;
+    ++(used > 0 ? count.with_history : count.without);
+    count.partial += used > 0 && used < 4 ? 1 : 0;
   }
-  return count;
 }
 
-TEST(Taps, AgreeWithTheTwinOnEveryTarget) {
+EL_KERNEL_TEST(Taps, MatchTheReference) {
   const FloatTrapsOff nan_is_meant;
-  for (const Extent extent : kSweepExtents) {
-    const RandomFrameOptions options{.extent = extent};
-    const Frame before = make_random_frame(options, 4), current = make_random_frame(options, 5);
-    for_each_target([&] {
-      const Count count = compare_with_twin(current, before);
-      const auto pixels = static_cast<int>(extent.pixels());
-      EXPECT_GE(count.compared, pixels * 99 / 100);
-      if (pixels < 1000) return;
-      // The frame has some of everything, else the comparison means little.
-      EXPECT_GT(count.with_history, pixels / 2);
-      EXPECT_GT(count.without, pixels / 10);
-      EXPECT_GT(count.partial, pixels / 20);
-    });
-  }
+  const RandomFrameOptions options{.extent = extent};
+  const Frame before = make_random_frame(options, 4), current = make_random_frame(options, 5);
+  const PreviousSurface previous{before.camera, before.surface};
+  const TileGrid rows(extent, kSegment, 1);
+  on_every_target([&] {
+    PerTile<TapSegment> taps(rows);
+    for_each_tile(rows,
+                  [&](const Tile& row) { compute_taps(current, previous, {}, row, taps[row]); });
+    Count count;
+    for (int i = 0; i < rows.count(); ++i) {
+      compare_row(current, previous, rows.tile(i), taps[i], count);
+    }
+    const auto pixels = static_cast<int>(extent.pixels());
+    EXPECT_GE(count.compared, pixels * 99 / 100);
+    if (pixels < 1000) return;
+    // The comparison means little unless every case occurs.
+    EXPECT_GT(count.with_history, pixels / 2);
+    EXPECT_GT(count.without, pixels / 10);
+    EXPECT_GT(count.partial, pixels / 20);
+  });
 }
 
 // A wall at depth 4 that fills 8 x 6 pixels, seen twice by the same camera.
@@ -115,14 +110,14 @@ class TapRules : public ::testing::Test {
   TapOptions options_;
 };
 
-TEST_F(TapRules, AreBilinearWhereAllIsValid) { expect_near(weights(), kAll); }
+TEST_F(TapRules, ValidTapsAreBilinear) { expect_near(weights(), kAll); }
 
-TEST_F(TapRules, AnotherObjectIsNoTap) {
+TEST_F(TapRules, TapOnAnotherObjectIsRejected) {
   before_.surface.id(4, 2) = 4;
   expect_near(weights(), kWithoutSecond);
 }
 
-TEST_F(TapRules, AnotherNormalIsNoTap) {
+TEST_F(TapRules, TapWithAnotherNormalIsRejected) {
   const auto turn = [&](float cosine) {
     before_.surface.normal[0](4, 2) = std::sqrt(1.0f - cosine * cosine);
     before_.surface.normal[2](4, 2) = -cosine;
@@ -135,7 +130,7 @@ TEST_F(TapRules, AnotherNormalIsNoTap) {
   expect_near(weights(), kWithoutSecond);
 }
 
-TEST_F(TapRules, AnotherDepthIsNoTap) {
+TEST_F(TapRules, TapAtAnotherDepthIsRejected) {
   before_.surface.depth(4, 2) = 4.0f * 1.019f;
   expect_near(weights(), kAll);
   before_.surface.depth(4, 2) = 4.0f * 1.021f;
@@ -144,7 +139,7 @@ TEST_F(TapRules, AnotherDepthIsNoTap) {
   expect_near(weights(), kWithoutSecond);
 }
 
-TEST_F(TapRules, DistanceIsMeasuredFromThePlaneNotInDepth) {
+TEST_F(TapRules, DistanceIsMeasuredFromThePlane) {
   // A steep floor: depth changes by much more than the bound between neighbors.
   const glm::vec3 normal = glm::normalize(glm::vec3(0, -1, -0.2f));
   for (Frame* frame : {&current_, &before_}) {
@@ -166,7 +161,7 @@ TEST_F(TapRules, DistanceIsMeasuredFromThePlaneNotInDepth) {
   expect_near(weights(), kAll);
 }
 
-TEST_F(TapRules, OutsideTheImageIsNoTap) {
+TEST_F(TapRules, TapOutsideTheImageIsRejected) {
   current_.motion[0](7, 2) = 0.25f;  // taps 7 and 8
   expect_near(weights({7, 2}), {0.75f, 0, 0.25f, 0});
   current_.motion[0](0, 2) = -0.25f;  // taps -1 and 0
@@ -179,7 +174,7 @@ TEST_F(TapRules, OutsideTheImageIsNoTap) {
   }
 }
 
-TEST_F(TapRules, WhatIsNotFiniteHasNoTap) {
+TEST_F(TapRules, NonFiniteMotionHasNoTaps) {
   for (const float bad : {kNan, kInf, -kInf}) {
     for (std::size_t c = 0; c < 2; ++c) {
       current_.motion[c](3, 2) = bad;
@@ -197,13 +192,13 @@ TEST_F(TapRules, WhatIsNotFiniteHasNoTap) {
   }
 }
 
-TEST_F(TapRules, SkyHasNoTapEvenOnSky) {
+TEST_F(TapRules, SkyHasNoTaps) {
   current_.surface.id(3, 2) = 0;
   before_.surface.id.fill(0);
   expect_near(weights(), kNone);
 }
 
-TEST_F(TapRules, OneFarCornerIsNotTrusted) {
+TEST_F(TapRules, SingleDistantTapIsRejected) {
   before_.surface.id.fill(9);
   before_.surface.id(4, 3) = 3;
   current_.motion[0](3, 2) = current_.motion[1](3, 2) = 0.05f;  // bilinear weight 0.0025
@@ -212,7 +207,7 @@ TEST_F(TapRules, OneFarCornerIsNotTrusted) {
   expect_near(weights(), {0, 0, 0, 1});
 }
 
-TEST(TapOptions, RefusesWhatIsOutOfRange) {
+TEST(TapOptions, RejectsValuesOutOfRange) {
   const FloatTrapsOff nan_is_meant;
   const auto refused = [](float plane, float cosine) {
     EXPECT_THROW((TapOptions{plane, cosine}.validate()), std::invalid_argument);

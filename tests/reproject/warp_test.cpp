@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "tests/reference/warp.h"
-#include "tests/support/extents.h"
+#include "tests/support/kernel_test.h"
 #include "tests/support/random_frames.h"
 #include "tests/support/targets.h"
 
@@ -16,7 +16,7 @@ namespace {
 // Where the upper left tap of pixel x of a row lies.
 using Place = std::function<glm::ivec2(int x)>;
 
-// Taps of random weights, none of one pixel in five, 0 beside the image.
+// Taps of random weights. One pixel in five has none, and taps beside the image have weight 0.
 TapSegment make_taps(Extent extent, const Rect& row, std::uint32_t seed, const Place& place) {
   TapSegment taps{};
   for (int x = row.x0; x < row.x1; ++x) {
@@ -86,24 +86,23 @@ void for_each_row(Extent extent, const std::function<void(const Tile&)>& visit) 
   }
 }
 
-TEST(Warp, AgreesWithTheTwinForEveryNumberOfBasesOnEveryTarget) {
-  for (const Extent extent : kSweepExtents) {
-    for (int bases = 1; bases <= kMaxBases; ++bases) {
-      const BasisField from = random_bases(extent, bases, 7);
+EL_KERNEL_TEST(Warp, MatchesTheReferenceForAnyNumberOfBases) {
+  for (int bases = 1; bases <= kMaxBases; ++bases) {
+    const BasisField from = random_bases(extent, bases, 7);
+    on_every_target([&] {
       for_each_row(extent, [&](const Rect& row) {
-        const TapSegment taps = make_taps(extent, row, 3, anywhere(extent, 4));
-        for_each_target([&] { expect_warp(from, taps, row); });
+        expect_warp(from, make_taps(extent, row, 3, anywhere(extent, 4)), row);
       });
-    }
+    });
   }
 }
 
-// Neighbors that moved alike, but for one pixel, or those from one on, that lie a pixel to the
+// All pixels move alike, except that one pixel, or all pixels from one on, lie a pixel further
 // left.
-TEST(Warp, AgreesWithTheTwinWhereNeighborsMoveAlikeOnEveryTarget) {
-  for (const Extent extent : kSweepExtents) {
-    const BasisField from = random_bases(extent, 2, 7);
-    const Plane<float> plane = random_plane(extent, 9, 0.5f, 2.0f);
+EL_KERNEL_TEST(Warp, MatchesTheReferenceForCoherentMotion) {
+  const BasisField from = random_bases(extent, 2, 7);
+  const Plane<float> plane = random_plane(extent, 9, 0.5f, 2.0f);
+  on_every_target([&] {
     for (int n = 0; n < 25 * 5; ++n) {
       const glm::ivec2 shift{n % 5 - 2, n / 5 % 5 - 2};
       const int odd = std::array{-1, 0, 1, 7, 16}[static_cast<std::size_t>(n / 25)];
@@ -113,16 +112,14 @@ TEST(Warp, AgreesWithTheTwinWhereNeighborsMoveAlikeOnEveryTarget) {
           const bool apart = n % 2 == 0 ? i == odd : i >= odd && odd >= 0;
           return glm::ivec2(x + shift.x - (apart ? 1 : 0), row.y0 + shift.y);
         });
-        for_each_target([&] {
-          expect_warp(from, taps, row);
-          expect_plane_warp(plane, taps, row);
-        });
+        expect_warp(from, taps, row);
+        expect_plane_warp(plane, taps, row);
       });
     }
-  }
+  });
 }
 
-TEST(Warp, WritesTheRowItIsGivenAndZerosBehindIt) {
+TEST(Warp, WritesOnlyItsRowAndZerosItsPadding) {
   const Extent extent{65, 17};
   const BasisField from = random_bases(extent, 3, 7);
   const Rect row{64, 4, 65, 5};
@@ -142,8 +139,8 @@ TEST(Warp, WritesTheRowItIsGivenAndZerosBehindIt) {
   });
 }
 
-// Also where it is what a tap beside the image, or of another run, would read.
-TEST(Warp, ReadsNoTapOfWeightZero) {
+// NaN lies where taps of weight 0 would read.
+TEST(Warp, IgnoresTapsOfZeroWeight) {
   const Extent extent{65, 17};
   Plane<float> from = random_plane(extent, 9, 0.5f, 2.0f);
   const Rect row{0, 4, 64, 5};
@@ -167,7 +164,7 @@ TEST(Warp, ReadsNoTapOfWeightZero) {
   });
 }
 
-TEST(BasisField, AssignedTakesWhatBothHave) {
+TEST(BasisField, AssignCopiesTheBasesThatBothHave) {
   const BasisField from = random_bases({65, 17}, 3, 7);
   for (const int bases : {2, 5}) {
     BasisField to({65, 17}, bases);
@@ -184,7 +181,7 @@ TEST(BasisField, AssignedTakesWhatBothHave) {
   EXPECT_THROW(BasisField({64, 17}, 3).assign(from), std::invalid_argument);
 }
 
-TEST(BasisField, ForgetsATile) {
+TEST(BasisField, ClearErasesATile) {
   BasisField field({65, 17}, 2);
   fill_bases(field, 4.0f);
   field.clear({64, 3, 65, 5});
@@ -194,7 +191,7 @@ TEST(BasisField, ForgetsATile) {
   EXPECT_EQ(field.age(64, 5), 4.0f);
 }
 
-TEST(BasisField, RefusesTooFewOrTooManyBases) {
+TEST(BasisField, RejectsInvalidNumbersOfBases) {
   EXPECT_THROW(BasisField({4, 4}, 0), std::invalid_argument);
   EXPECT_THROW(BasisField({4, 4}, kMaxBases + 1), std::invalid_argument);
   EXPECT_THROW(BasisField({0, 4}, 3), std::invalid_argument);

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "tests/support/extents.h"
+#include "tests/support/kernel_test.h"
 #include "tests/support/targets.h"
 #include "tests/support/walls.h"
 
@@ -29,23 +29,21 @@ PlanarBlocks find(const Frame& frame) {
   return blocks;
 }
 
-TEST(PlanarBlocks, AWallIsPlanarEverywhereOnEveryTarget) {
-  for (const Extent extent : kSweepExtents) {
-    const Frame frame = make_walls(extent, kNoEdge);
-    for_each_target([&] {
-      const PlanarBlocks blocks = find(frame);
-      EXPECT_EQ(blocks.pixels(), static_cast<std::int64_t>(extent.pixels()));
-      EXPECT_EQ(blocks.margins((extent.height - 1) / 8)[(extent.width - 1) / 8], 2);
-    });
-  }
+EL_KERNEL_TEST(PlanarBlocks, WallIsPlanarEverywhere) {
+  const Frame frame = make_walls(extent, kNoEdge);
+  on_every_target([&] {
+    const PlanarBlocks blocks = find(frame);
+    EXPECT_EQ(blocks.pixels(), static_cast<std::int64_t>(extent.pixels()));
+    EXPECT_EQ(blocks.margins((extent.height - 1) / 8)[(extent.width - 1) / 8], 2);
+  });
 }
 
-TEST(PlanarBlocks, AnEdgeEndsThePlaneOnBothSides) {
+TEST(PlanarBlocks, EdgeEndsThePlaneOnBothSides) {
   EXPECT_EQ(margins(find(make_walls(kSmall, 32)), 2), "22100122");
-  EXPECT_EQ(margins(find(make_walls(kSmall, 33)), 2), "22100012");  // the fifth block has both
+  EXPECT_EQ(margins(find(make_walls(kSmall, 33)), 2), "22100012");  // the fifth block is mixed
 }
 
-// What one pixel of the middle of the image does to the row of blocks it is in.
+// One pixel in the middle of the image keeps its block from being planar.
 class PlanarBlocksPixel : public ::testing::Test {
  protected:
   void expect_hole() {
@@ -61,33 +59,33 @@ class PlanarBlocksPixel : public ::testing::Test {
   Frame frame_ = make_walls(kSmall, kNoEdge);
 };
 
-TEST_F(PlanarBlocksPixel, Sky) {
+TEST_F(PlanarBlocksPixel, SkyIsNotPlanar) {
   open_to_sky(frame_, kX, kY);
   expect_hole();
 }
 
-TEST_F(PlanarBlocksPixel, NoObject) {
+TEST_F(PlanarBlocksPixel, MissingIdIsNotPlanar) {
   frame_.surface.id(kX, kY) = 0;
   expect_hole();
 }
 
-TEST_F(PlanarBlocksPixel, OffThePlane) {
+TEST_F(PlanarBlocksPixel, OtherDepthIsNotPlanar) {
   frame_.surface.depth(kX, kY) *= 1.0001f;
   expect_hole();
 }
 
-TEST_F(PlanarBlocksPixel, OtherNormal) {
+TEST_F(PlanarBlocksPixel, OtherNormalIsNotPlanar) {
   frame_.surface.normal[1](kX, kY) += 0.002f;
   frame_.surface.normal[2](kX, kY) -= 0.002f;
   expect_hole();
 }
 
-TEST_F(PlanarBlocksPixel, NoUnitNormal) {
+TEST_F(PlanarBlocksPixel, NormalOfOtherLengthIsNotPlanar) {
   for (auto& plane : frame_.surface.normal) plane(kX, kY) *= 1.0001f;
   expect_hole();
 }
 
-TEST_F(PlanarBlocksPixel, FirstOfItsBlockIsNaN) {
+TEST_F(PlanarBlocksPixel, NanNormalIsNotPlanar) {
   frame_.surface.normal[0](24, 16) = std::numeric_limits<float>::quiet_NaN();
   expect_hole();
 }
@@ -98,7 +96,7 @@ TEST(PlanarBlocks, DepthsWithinTheToleranceAreOnePlane) {
   EXPECT_EQ(find(frame).pixels(), 64 * 48);
 }
 
-// Parallel planes, each of which a block fills, are no plane.
+// Two parallel planes, each filling a block, are not one plane.
 TEST(PlanarBlocks, NeighborsMustLieInTheSamePlane) {
   Frame frame = make_walls(kSmall, kNoEdge);
   for (int y = 16; y < 24; ++y) {
@@ -107,7 +105,7 @@ TEST(PlanarBlocks, NeighborsMustLieInTheSamePlane) {
   EXPECT_EQ(margins(find(frame), 2), "21000122");
 }
 
-TEST(PlanarBlocks, TilesThatAreNotChosenAreNotPlanar) {
+TEST(PlanarBlocks, UnselectedTilesAreNotPlanar) {
   const Frame frame = make_walls(kSmall, kNoEdge);
   PlanarBlocks blocks(kSmall, kTolerance);
   blocks.find(frame, std::vector<std::uint8_t>{1, 1, 0});
@@ -118,7 +116,7 @@ TEST(PlanarBlocks, TilesThatAreNotChosenAreNotPlanar) {
   EXPECT_EQ(blocks.pixels(), 0);
 }
 
-TEST(PlanarBlocks, RefusesOtherExtentsAndTolerances) {
+TEST(PlanarBlocks, RejectsOtherExtentsAndTolerances) {
   const Frame frame = make_walls(kSmall, kNoEdge);
   PlanarBlocks other({65, 48}, kTolerance), same(kSmall, kTolerance);
   EXPECT_THROW(other.find(frame, std::vector<std::uint8_t>(6, 1)), std::invalid_argument);

@@ -7,9 +7,8 @@
 #include <limits>
 
 #include "frame/float_traps.h"
-#include "tests/support/extents.h"
+#include "tests/support/kernel_test.h"
 #include "tests/support/random_frames.h"
-#include "tests/support/targets.h"
 
 namespace eigenlight {
 namespace {
@@ -20,7 +19,7 @@ struct Scene {
     for (int y = 0; y < extent.height; ++y) {
       for (int x = 0; x < extent.width; ++x) {
         PixelRandom random(seed, x, y);
-        // Half old, a fifth new, the rest in between.
+        // Half of the pixels are old, a fifth are new, and the rest lie in between.
         const float kind = random.uniform();
         age(x, y) = kind < 0.2f ? 0.0f : kind < 0.5f ? random.between(0.0f, 16.0f) : 64.0f;
       }
@@ -52,7 +51,7 @@ struct Scene {
   Plane<std::uint8_t> extra;
 };
 
-// Water filling by trial: the highest level, in whole samples, that the limit allows.
+// The highest level in whole samples that the limit allows, by trying every level.
 int brute_force_level(const Scene& scene, const BudgetOptions& options) {
   const int spp = scene.frame.spp;
   const double limit = options.share * spp * static_cast<double>(scene.surface());
@@ -73,8 +72,8 @@ int brute_force_level(const Scene& scene, const BudgetOptions& options) {
   return best;
 }
 
-// Only a damaged state holds such ages; they must not become indices.
-TEST(SampleBudget, AgesThatAreNoneCountAsNew) {
+// A damaged state can hold such ages; they must not become indices.
+TEST(SampleBudget, InvalidAgesCountAsNew) {
   const BudgetOptions options{.share = 20.0};
   Scene fresh({16, 4});
   fresh.age.fill(0.0f);
@@ -86,30 +85,31 @@ TEST(SampleBudget, AgesThatAreNoneCountAsNew) {
   }
 }
 
-void agree_with_brute_force() {
-  for (const Extent extent : kSweepExtents) {
-    for (const double share : {0.0, 0.05, 0.3, 1.0, 20.0}) {
-      for (const int most : {0, 3, 120}) {
-        const BudgetOptions options{share, most, 12.0f};
-        Scene scene(extent);
-        const BudgetStats stats = scene.run(options);
-        const int level = brute_force_level(scene, options);
-        EXPECT_EQ(stats.level, 1.0f + static_cast<float>(level) / 3.0f);
-        EXPECT_EQ(stats.samples, scene.granted());
-        for (int y = 0; y < extent.height; ++y) {
-          for (int x = 0; x < extent.width; ++x) {
-            const int held = static_cast<int>(std::round(scene.age(x, y) * 3.0f));
-            const int wanted =
-                scene.frame.surface.id(x, y) == 0 ? 0 : std::clamp(level - held, 0, most);
-            ASSERT_EQ(scene.extra(x, y), wanted) << x << ", " << y;
-          }
-        }
-      }
+void expect_level(const Scene& scene, const BudgetStats& stats, int level, int most) {
+  EXPECT_EQ(stats.level, 1.0f + static_cast<float>(level) / 3.0f);
+  EXPECT_EQ(stats.samples, scene.granted());
+  for (int y = 0; y < scene.age.height(); ++y) {
+    for (int x = 0; x < scene.age.width(); ++x) {
+      const int held = static_cast<int>(std::round(scene.age(x, y) * 3.0f));
+      const int wanted = scene.frame.surface.id(x, y) == 0 ? 0 : std::clamp(level - held, 0, most);
+      ASSERT_EQ(scene.extra(x, y), wanted) << x << ", " << y;
     }
   }
 }
 
-TEST(SampleBudget, AgreesWithBruteForce) { for_each_target(agree_with_brute_force); }
+EL_KERNEL_TEST(SampleBudget, MatchesBruteForce) {
+  for (const double share : {0.0, 0.05, 0.3, 1.0, 20.0}) {
+    for (const int most : {0, 3, 120}) {
+      const BudgetOptions options{share, most, 12.0f};
+      const int level = brute_force_level(Scene(extent), options);
+      on_every_target([&] {
+        Scene scene(extent);
+        const BudgetStats stats = scene.run(options);
+        expect_level(scene, stats, level, most);
+      });
+    }
+  }
+}
 
 TEST(SampleBudget, NeverExceedsTheLimit) {
   for (std::uint32_t seed = 1; seed < 20; ++seed) {
@@ -133,8 +133,8 @@ TEST(SampleBudget, ServesTheYoungestFirst) {
         EXPECT_EQ(scene.extra(x, y), 0);
         continue;
       }
-      // This frame's own samples included, those that got some reach the level, and those above it
-      // got none; but for half a sample of rounding.
+      // With this frame's samples, every pixel reaches the level, and pixels above it get no extra
+      // samples, up to rounding by half a sample.
       const float after = scene.age(x, y) + 1.0f + static_cast<float>(scene.extra(x, y)) / 3.0f;
       constexpr float kHalf = 0.5f / 3.0f + 1e-4f;
       EXPECT_GE(after, stats.level - kHalf) << x << ", " << y;
@@ -143,7 +143,7 @@ TEST(SampleBudget, ServesTheYoungestFirst) {
   }
 }
 
-TEST(SampleBudget, CapsEachPixelAndLeavesOldOnesAlone) {
+TEST(SampleBudget, CapsTheSamplesOfAPixel) {
   Scene scene({65, 17});
   scene.run({100.0, 5, 12.0f});
   std::int64_t most = 0;
@@ -156,7 +156,7 @@ TEST(SampleBudget, CapsEachPixelAndLeavesOldOnesAlone) {
   EXPECT_EQ(most, 5);
 }
 
-TEST(SampleBudget, IsEmptyForSkyAloneAndForNothingToSpend) {
+TEST(SampleBudget, IsZeroWithoutSurfaceOrShare) {
   Scene scene({65, 17});
   EXPECT_EQ(scene.run({0.0, 120, 12.0f}).samples, 0);
   EXPECT_EQ(scene.granted(), 0);
@@ -172,7 +172,7 @@ TEST(SampleBudget, CountsThePixelsItServes) {
   EXPECT_EQ(stats.pixels, scene.count([](int samples) { return samples > 0 ? 1 : 0; }));
 }
 
-TEST(SampleBudget, RefusesOtherExtentsAndBadOptions) {
+TEST(SampleBudget, RejectsOtherExtentsAndBadOptions) {
   const FloatTrapsOff nan_is_meant;
   Scene scene({65, 17});
   SampleBudget other({64, 17}, {});

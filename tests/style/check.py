@@ -133,6 +133,36 @@ def header_faults(name, lines):
         yield f"{name}:1: no #pragma once"
 
 
+def stem(name):
+    """The name of a source without folder, ending, and what kernel files add to it."""
+    return re.sub(r"(_kernel|_simd|_test)?\.(h|cpp)$", "", name.rpartition("/")[2])
+
+
+def own_stems(name, lines):
+    """The stem of a source, and those of the headers that it includes from its own folder (a test:
+    from the folder that it mirrors)."""
+    folder = name.rpartition("/")[0].removeprefix("tests/")
+    included = (match.group(1) for match in map(INCLUDE.match, lines) if match)
+    headers = {stem(i) for i in included if i and i.rpartition("/")[0] == folder}
+    return headers | {stem(name)}
+
+
+def kernel_faults(sources):
+    """Each file of vector kernels needs an EL_KERNEL_TEST (tests/support/kernel_test.h) in the
+    folder of its tests, in a file that includes its header or one whose name starts alike.
+    `sources` are the lines of all files by name."""
+    tested = collections.defaultdict(set)  # stems by folder
+    for name, lines in sources.items():
+        if name.startswith("tests/") and any(line.startswith("EL_KERNEL_TEST(") for line in lines):
+            tested[name.rpartition("/")[0].removeprefix("tests/")] |= own_stems(name, lines)
+    for name, lines in sources.items():
+        if name.startswith("tests/") or not any("HWY_EXPORT(" in line for line in lines):
+            continue
+        folder, stems = name.rpartition("/")[0], own_stems(name, lines)
+        if not any(f"{own}_".startswith(f"{other}_") for own in stems for other in tested[folder]):
+            yield f"{name}:1: no EL_KERNEL_TEST in tests/{folder}/ includes its header"
+
+
 def flag_faults(root):
     files = [p for p in root.rglob("CMakeLists.txt")] + list(root.rglob("*.cmake"))
     files.append(root / "CMakePresets.json")
@@ -157,16 +187,18 @@ def format_faults(root, paths):
 
 
 def faults(root):
-    names = []
+    names, sources = [], {}
     for path, name in cpp_files(root):
         lines = path.read_text().splitlines()
         names.append(name)
+        sources[name] = lines
         yield from include_faults(name, lines)
         yield from length_faults(name, lines)
         yield from header_faults(name, lines)
     if not names:
         yield f"{root}: no source file found"
     yield from crowding_faults(names)
+    yield from kernel_faults(sources)
     yield from flag_faults(root)
     yield from format_faults(root, names)
 

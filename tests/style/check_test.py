@@ -14,7 +14,8 @@ GOOD = {
     "frame/plane.h": "#pragma once\n",
     "temporal/mean.cpp": '#include "frame/plane.h"\n#include "temporal/mean.h"\n#include <vector>\n',
     "temporal/mean.h": "#pragma once\n",
-    "spatial/blur_simd.cpp": "#include <hwy/highway.h>\n",
+    "spatial/blur_simd.cpp": '#include "spatial/blur_kernel.h"\n#include <hwy/highway.h>\nHWY_EXPORT(Blur);\n',
+    "tests/spatial/blur_test.cpp": '#include "spatial/blur.h"\nEL_KERNEL_TEST(Blur, MatchesTheReference) {}\n',
     "CMakeLists.txt": "# never -ffast-math\n",
 }
 
@@ -50,6 +51,8 @@ class CheckTest(unittest.TestCase):
             ("sequences/x.cpp", "#include <OpenImageIO/imageio.h>\n", "belongs in"),
             ("frame/x.cpp", "\n" * 401, "longer than 400 lines"),
             ("frame/x.h", "\n", "no #pragma once"),
+            ("spatial/sharpen_simd.cpp", '#include "spatial/sharpen.h"\nHWY_EXPORT(Sharpen);\n',
+             "no EL_KERNEL_TEST in tests/spatial/ includes its header"),
             ("frame/CMakeLists.txt", "add_compile_options(-march=native)\n", "changes floating"),
         ]
         for name, text, message in cases:

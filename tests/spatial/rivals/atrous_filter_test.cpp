@@ -5,8 +5,7 @@
 #include "frame/float_traps.h"
 #include "tests/reference/atrous_filter.h"
 #include "tests/support/compare.h"
-#include "tests/support/extents.h"
-#include "tests/support/targets.h"
+#include "tests/support/kernel_test.h"
 
 namespace eigenlight {
 namespace {
@@ -16,22 +15,20 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 void expect_agreement(Extent extent, const AtrousFilterOptions& options) {
   const SpatialCase c(extent);
   const Planes<3> twin = reference::AtrousTwin(c, options).run();
-  for_each_target([&] {
+  on_every_target([&] {
     AtrousFilter filter(extent, options);
     EXPECT_TRUE(planes_near(c.run(filter), twin, {1e-4, 1e-6})) << options.passes << " passes";
   });
 }
 
-TEST(AtrousFilter, AgreesWithItsTwinOnEveryTarget) {
-  for (const Extent extent : kSweepExtents) expect_agreement(extent, {.passes = 3});
-}
+EL_KERNEL_TEST(AtrousFilter, MatchesTheReference) { expect_agreement(extent, {.passes = 3}); }
 
-TEST(AtrousFilter, AgreesWithItsTwinWithAllPasses) {
+TEST(AtrousFilter, MatchesTheReferenceWithAllPasses) {
   expect_agreement({100, 70}, {.passes = 6, .sigma_color = 2.0f, .sigma_position = 0.5f});
 }
 
-// A spot one pixel wide spreads by the B3-spline with holes.
-TEST(AtrousFilter, SpreadsLightByTheSplineWithHoles) {
+// A single bright pixel spreads by the B3-spline with holes.
+TEST(AtrousFilter, PointSpreadsByTheB3Spline) {
   SpatialCase c = SpatialCase::corner({64, 64});
   for (auto& plane : c.signal) plane.fill(0.0f);
   for (std::size_t i = 0; i < 3; ++i) c.frame.surface.normal[i].fill(i == 2 ? -1.0f : 0.0f);
@@ -52,7 +49,7 @@ TEST(AtrousFilter, SpreadsLightByTheSplineWithHoles) {
   EXPECT_EQ(spread[1](39, 32), 0.0f);
 }
 
-TEST(AtrousFilter, ASmallColorSigmaKeepsEdgesOfLight) {
+TEST(AtrousFilter, SmallColorSigmaKeepsEdgesOfLight) {
   SpatialCase c = SpatialCase::corner({64, 32});
   for (std::size_t i = 0; i < 3; ++i) c.frame.surface.normal[i].fill(i == 2 ? -1.0f : 0.0f);
   c.frame.surface.depth.fill(4.0f);
@@ -65,7 +62,7 @@ TEST(AtrousFilter, ASmallColorSigmaKeepsEdgesOfLight) {
   EXPECT_LT(c.run(blurs)[0](31, 16), 4.0f);
 }
 
-TEST(AtrousFilter, RefusesBadOptions) {
+TEST(AtrousFilter, RejectsBadOptions) {
   const FloatTrapsOff nan_is_meant;
   EXPECT_THROW(AtrousFilter({8, 8}, {.passes = 0}), std::invalid_argument);
   EXPECT_THROW(AtrousFilter({8, 8}, {.passes = 7}), std::invalid_argument);

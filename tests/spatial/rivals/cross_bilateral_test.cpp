@@ -5,8 +5,7 @@
 #include "frame/float_traps.h"
 #include "tests/reference/cross_bilateral.h"
 #include "tests/support/compare.h"
-#include "tests/support/extents.h"
-#include "tests/support/targets.h"
+#include "tests/support/kernel_test.h"
 
 namespace eigenlight {
 namespace {
@@ -16,23 +15,22 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 void expect_agreement(Extent extent, const CrossBilateralOptions& options) {
   const SpatialCase c(extent);
   const Planes<3> twin = reference::cross_bilateral(c, options);
-  for_each_target([&] {
+  on_every_target([&] {
     CrossBilateral filter(extent, options);
-    // Positions in float are good to 1e-7 of the depth, which the plane's sigma magnifies.
+    // The rounding of positions is 1e-7 of the depth; division by the sigma of planes magnifies it.
     EXPECT_TRUE(planes_near(c.run(filter), twin, {1e-4, 1e-6})) << "radius " << options.radius;
   });
 }
 
-TEST(CrossBilateral, AgreesWithItsTwinOnEveryTarget) {
-  for (const Extent extent : kSweepExtents) expect_agreement(extent, {.radius = 3});
-  expect_agreement({65, 17}, {.radius = 16, .sigma_normal = 0.7f, .sigma_albedo = 0.5f});
-}
+EL_KERNEL_TEST(CrossBilateral, MatchesTheReference) { expect_agreement(extent, {.radius = 3}); }
 
-TEST(CrossBilateral, AgreesWithItsTwinAtTheWidestRadius) {
+TEST(CrossBilateral, MatchesTheReferenceAtWideRadii) {
+  expect_agreement({65, 17}, {.radius = 16, .sigma_normal = 0.7f, .sigma_albedo = 0.5f});
   expect_agreement({33, 20}, {.radius = 32, .sigma_plane = 0.3f});
 }
 
-// With guides that never weigh, the filter is a Gaussian of sigma radius / 2, cut at the radius.
+// Without differences in the guides, the filter is a Gaussian of sigma radius / 2, cut at the
+// radius.
 TEST(CrossBilateral, IsAGaussianOnAFlatWall) {
   SpatialCase c = SpatialCase::corner({64, 64});
   for (auto& plane : c.signal) plane.fill(0.0f);
@@ -68,7 +66,7 @@ TEST(CrossBilateral, EveryGuideIsAnEdge) {
   }
 }
 
-TEST(CrossBilateral, RefusesBadOptions) {
+TEST(CrossBilateral, RejectsBadOptions) {
   const FloatTrapsOff nan_is_meant;
   EXPECT_THROW(CrossBilateral({8, 8}, {.radius = 0}), std::invalid_argument);
   EXPECT_THROW(CrossBilateral({8, 8}, {.radius = 33}), std::invalid_argument);

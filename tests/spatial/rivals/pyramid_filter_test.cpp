@@ -1,5 +1,6 @@
 #include "spatial/rivals/pyramid_filter.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,9 +8,8 @@
 
 #include "tests/reference/pyramid.h"
 #include "tests/support/compare.h"
-#include "tests/support/extents.h"
+#include "tests/support/kernel_test.h"
 #include "tests/support/random_frames.h"
-#include "tests/support/targets.h"
 
 namespace eigenlight {
 namespace {
@@ -42,31 +42,28 @@ struct Case {
   Plane<float> weight;
 };
 
-TEST(PyramidFilter, AgreesWithItsTwinOnEveryInstructionSet) {
-  for (const Extent extent : kSweepExtents) {
-    const Case c(extent);
-    for (const auto& [radius, gamma] : {std::pair(0.4f, 1.0f), std::pair(3.0f, 0.0f),
-                                        std::pair(24.0f, 0.0f), std::pair(24.0f, 1.0f)}) {
-      const GlobalIlluminationEdge edge{.blur_radius = radius, .gamma_scale = gamma};
-      const Planes<3> wanted = c.twin(edge);
-      for_each_target([&] {
-        const Planes<3> found = c.filter(edge);
-        EXPECT_LE(reference::share_beyond(2e-4, found, wanted), 0.02)
-            << extent.width << "x" << extent.height << ", radius " << radius << ", gamma " << gamma;
-        EXPECT_LE(reference::share_beyond(1e-2, found, wanted), 1e-3)
-            << extent.width << "x" << extent.height << ", radius " << radius << ", gamma " << gamma;
-      });
-    }
+EL_KERNEL_TEST(PyramidFilter, MatchesTheReference) {
+  const Case c(extent);
+  for (const auto& [radius, gamma] : {std::pair(0.4f, 1.0f), std::pair(3.0f, 0.0f),
+                                      std::pair(24.0f, 0.0f), std::pair(24.0f, 1.0f)}) {
+    const testing::ScopedTrace trace(__FILE__, __LINE__, fmt::format("{}, {}", radius, gamma));
+    const GlobalIlluminationEdge edge{.blur_radius = radius, .gamma_scale = gamma};
+    const Planes<3> wanted = c.twin(edge);
+    on_every_target([&] {
+      const Planes<3> found = c.filter(edge);
+      EXPECT_LE(reference::share_beyond(2e-4, found, wanted), 0.02);
+      EXPECT_LE(reference::share_beyond(1e-2, found, wanted), 1e-3);
+    });
   }
 }
 
-TEST(PyramidFilter, AgreesWithItsTwinAtTheWidestRadius) {
+TEST(PyramidFilter, MatchesTheReferenceAtTheWidestRadius) {
   const Case c({150, 90});
   const GlobalIlluminationEdge edge{.blur_radius = 64.0f};
   EXPECT_LE(reference::share_beyond(2e-4, c.filter(edge), c.twin(edge)), 0.02);
 }
 
-TEST(PyramidFilter, WhatHasNoSurfaceIsZeroAndReachesNobody) {
+TEST(PyramidFilter, PixelsWithoutSurfaceAreZeroAndDoNotSpread) {
   Case clean({97, 61}), dirty({97, 61});
   for (int y = 0; y < 61; ++y) {
     for (int x = 0; x < 97; ++x) {
@@ -87,7 +84,7 @@ TEST(PyramidFilter, WhatHasNoSurfaceIsZeroAndReachesNobody) {
   }
 }
 
-TEST(PyramidFilter, LightThatIsNotFiniteCountsAsMissing) {
+TEST(PyramidFilter, NonFiniteLightCountsAsMissing) {
   Case missing({70, 40}), broken({70, 40});
   for (auto* c : {&missing, &broken}) {
     for (auto& plane : c->frame.lights[0].radiance) plane = random_plane({70, 40}, 1, 0.0f, 2.0f);
@@ -100,7 +97,7 @@ TEST(PyramidFilter, LightThatIsNotFiniteCountsAsMissing) {
   }
 }
 
-TEST(PyramidFilter, FlatLightStaysFlat) {
+TEST(PyramidFilter, ConstantLightStaysConstant) {
   Case c({191, 107});
   for (auto& plane : c.frame.lights[0].radiance) plane.fill(0.7f);
   const Planes<3> out = c.filter({});
@@ -117,7 +114,7 @@ TEST(PyramidFilter, FlatLightStaysFlat) {
   }
 }
 
-TEST(PyramidFilter, GivesTheSameBitsOnAnyNumberOfThreadsAndAgain) {
+TEST(PyramidFilter, ThreadCountDoesNotChangeTheBits) {
   const Case c({191, 107});
   set_thread_count(1);
   const Planes<3> one = c.filter({});
@@ -132,7 +129,7 @@ TEST(PyramidFilter, GivesTheSameBitsOnAnyNumberOfThreadsAndAgain) {
   EXPECT_TRUE(planes_equal(one, again));
 }
 
-TEST(PyramidFilter, RefusesBadOptionsAndSizes) {
+TEST(PyramidFilter, RejectsBadOptionsAndSizes) {
   EXPECT_THROW(PyramidFilter({8, 8}, {.normal_power = 0.0f}), std::invalid_argument);
   EXPECT_THROW(PyramidFilter({8, 8}, {.depth_scale = -1.0f}), std::invalid_argument);
   EXPECT_THROW(PyramidFilter({8, 8}, {.blur_radius = 65.0f}), std::invalid_argument);

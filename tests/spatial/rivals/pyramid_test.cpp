@@ -10,7 +10,7 @@
 #include "frame/random.h"
 #include "tests/reference/pyramid.h"
 #include "tests/support/compare.h"
-#include "tests/support/extents.h"
+#include "tests/support/kernel_test.h"
 #include "tests/support/random_frames.h"
 
 namespace eigenlight {
@@ -65,20 +65,19 @@ struct Case {
 
 constexpr Tolerance kSmall{1e-4, 1e-5};
 
-TEST(Pyramid, AgreesWithItsTwinOnSurfaces) {
-  for (const Extent extent : kSweepExtents) {
-    const Case c(extent);
-    for (const float radius : {0.0f, 0.4f, 5.0f, 64.0f}) {
-      const GlobalIlluminationEdge edge{.blur_radius = radius, .gamma_scale = 0.5f};
-      const Planes<3> wanted = reference::pyramid(reference::global_illumination_range(edge),
-                                                  c.inputs(), trained_pyramid_table());
-      EXPECT_LE(reference::share_beyond(2e-4, c.filter(edge), wanted), 0.02)
-          << extent.width << "x" << extent.height << ", radius " << radius;
-    }
+EL_KERNEL_TEST(Pyramid, MatchesTheReferenceOnSurfaces) {
+  const Case c(extent);
+  for (const float radius : {0.0f, 0.4f, 5.0f, 64.0f}) {
+    const GlobalIlluminationEdge edge{.blur_radius = radius, .gamma_scale = 0.5f};
+    const Planes<3> wanted = reference::pyramid(reference::global_illumination_range(edge),
+                                                c.inputs(), trained_pyramid_table());
+    on_every_target([&] {
+      EXPECT_LE(reference::share_beyond(2e-4, c.filter(edge), wanted), 0.02) << "radius " << radius;
+    });
   }
 }
 
-TEST(Pyramid, AgreesWithItsTwinWithoutTraining) {
+TEST(Pyramid, MatchesTheReferenceWithoutTraining) {
   const Case c({65, 17});
   const GlobalIlluminationEdge edge{.blur_radius = 12.0f};
   EXPECT_TRUE(planes_near(c.filter(edge, untrained_pyramid_table()),
@@ -87,33 +86,31 @@ TEST(Pyramid, AgreesWithItsTwinWithoutTraining) {
                           kSmall));
 }
 
-TEST(Pyramid, AgreesWithItsTwinWhereRoughnessVaries) {
-  const Case c({65, 47}, 5);
+EL_KERNEL_TEST(Pyramid, MatchesTheReferenceForVaryingRoughness) {
+  const Case c(extent, 5);
   const ReflectionEdge edge;
   const Planes<3> wanted =
       reference::pyramid(reference::reflection_range(edge), c.inputs(), trained_pyramid_table());
-  EXPECT_LE(reference::share_beyond(2e-4, c.filter(edge), wanted), 0.02);
+  on_every_target([&] { EXPECT_LE(reference::share_beyond(2e-4, c.filter(edge), wanted), 0.02); });
 }
 
-TEST(Pyramid, AgreesWithItsTwinForCirclesOfConfusion) {
-  const Case c({65, 47}, 1);
+EL_KERNEL_TEST(Pyramid, MatchesTheReferenceForCirclesOfConfusion) {
+  const Case c(extent, 1);
   const DepthOfFieldEdge edge;
-  EXPECT_TRUE(planes_near(c.filter(edge),
-                          reference::pyramid(reference::depth_of_field_range(edge), c.inputs(),
-                                             trained_pyramid_table()),
-                          kSmall));
+  const Planes<3> wanted = reference::pyramid(reference::depth_of_field_range(edge), c.inputs(),
+                                              trained_pyramid_table());
+  on_every_target([&] { EXPECT_TRUE(planes_near(c.filter(edge), wanted, kSmall)); });
 }
 
-TEST(Pyramid, AgreesWithItsTwinForParticles) {
-  const Case c({65, 47}, 1);
+EL_KERNEL_TEST(Pyramid, MatchesTheReferenceForParticles) {
+  const Case c(extent, 1);
   const ParticleEdge edge{.depth_scale = 0.05f};
-  EXPECT_TRUE(planes_near(
-      c.filter(edge),
-      reference::pyramid(reference::particle_range(edge), c.inputs(), trained_pyramid_table()),
-      kSmall));
+  const Planes<3> wanted =
+      reference::pyramid(reference::particle_range(edge), c.inputs(), trained_pyramid_table());
+  on_every_target([&] { EXPECT_TRUE(planes_near(c.filter(edge), wanted, kSmall)); });
 }
 
-TEST(Pyramid, FlatLightStaysFlatWhateverTheGeometryAndTheWeights) {
+TEST(Pyramid, ConstantLightStaysConstant) {
   Case c({97, 61});
   for (auto& plane : c.signal) plane.fill(2.5f);
   const Planes<3> out = c.filter(GlobalIlluminationEdge{});
@@ -129,7 +126,7 @@ TEST(Pyramid, FlatLightStaysFlatWhateverTheGeometryAndTheWeights) {
   }
 }
 
-TEST(Pyramid, ASampleThatIsNoNumberReachesNobody) {
+TEST(Pyramid, NonFiniteLightDoesNotSpread) {
   const FloatTrapsOff nan_is_meant;
   Case missing({70, 40}), broken({70, 40});
   for (int y = 0; y < 40; ++y) {
@@ -145,8 +142,8 @@ TEST(Pyramid, ASampleThatIsNoNumberReachesNobody) {
   EXPECT_TRUE(planes_equal(broken.filter(edge), missing.filter(edge)));
 }
 
-// Two walls at a right angle, each with its own light: none of it crosses, at any radius.
-TEST(Pyramid, EdgesOfTheGuideStayEdges) {
+// Two perpendicular walls with different light: none of it crosses the edge at any radius.
+TEST(Pyramid, EdgesOfTheGuideAreKept) {
   Case c({96, 64});
   for (int y = 0; y < 64; ++y) {
     for (int x = 0; x < 96; ++x) {
@@ -164,16 +161,16 @@ TEST(Pyramid, EdgesOfTheGuideStayEdges) {
   }
 }
 
-// Without edges the filter is a convolution. Its kernel, a mean over the four positions, is that
-// of the Gaussian but for a third of its length (the untrained one: two thirds) and thin tails.
-TEST(Pyramid, SpreadsAPointAsTheGaussianOfItsRadius) {
+// Without edges the filter is a convolution. Its kernel, averaged over the four positions in
+// coarser pixels, differs from the Gaussian by a third of its norm (untrained weights: two thirds).
+TEST(Pyramid, PointSpreadsLikeAGaussian) {
   for (const int radius : {2, 6, 16}) {
     Case c({161, 161}, 3);
     c.attributes.fill(0.5f);
     c.weight.fill(1.0f);
     double spread = 0.0, sum = 0.0, off = 0.0, length = 0.0;
     const auto wanted = static_cast<double>(pyramid_sigma(static_cast<float>(radius)));
-    // All four positions within coarser pixels.
+
     for (int p = 0; p < 4; ++p) {
       for (auto& plane : c.signal) plane.fill(0.0f);
       const int px = 80 + p % 2, py = 80 + p / 2;
@@ -199,8 +196,8 @@ TEST(Pyramid, SpreadsAPointAsTheGaussianOfItsRadius) {
   }
 }
 
-// A blurred background must not take from what is in focus, nor give to it.
-TEST(Pyramid, WhatIsInFocusStaysSharp) {
+// A blurred background neither takes light from focused pixels nor gives light to them.
+TEST(Pyramid, FocusedPixelsStaySharp) {
   Case c({80, 60}, 1);
   c.weight.fill(1.0f);
   for (int y = 0; y < 60; ++y) {
@@ -218,7 +215,7 @@ TEST(Pyramid, WhatIsInFocusStaysSharp) {
   }
 }
 
-TEST(Pyramid, GivesTheSameBitsOnAnyNumberOfThreads) {
+TEST(Pyramid, ThreadCountDoesNotChangeTheBits) {
   const Case c({191, 107});
   const GlobalIlluminationEdge edge;
   set_thread_count(1);
@@ -229,7 +226,7 @@ TEST(Pyramid, GivesTheSameBitsOnAnyNumberOfThreads) {
   EXPECT_TRUE(planes_equal(one, three));
 }
 
-TEST(Pyramid, RefusesPlanesOfAnotherShape) {
+TEST(Pyramid, RejectsPlanesOfAnotherShape) {
   Case c({20, 20});
   Pyramid<GlobalIlluminationEdge> pyramid({20, 20}, {});
   Planes<3> out = make_planes<3>({20, 21});

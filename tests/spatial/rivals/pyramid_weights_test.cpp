@@ -9,7 +9,7 @@
 namespace eigenlight {
 namespace {
 
-TEST(PyramidWeights, InterpolationIsThatOfThePaper) {
+TEST(PyramidWeights, InterpolationMatchesThePaper) {
   for (const int odd : {0, 1}) {
     double sum = 0.0, signed_distance = 0.0;
     for (const int i : {-1, 0, 1}) {
@@ -26,7 +26,7 @@ TEST(PyramidWeights, InterpolationIsThatOfThePaper) {
 }
 
 // Eq. 2g, for all four positions of a pixel within its coarser one.
-TEST(PyramidWeights, ThoseOfThePaperAndOursSumToOne) {
+TEST(PyramidWeights, WeightsSumToOne) {
   for (const PyramidTable* table : {&trained_pyramid_table(), &untrained_pyramid_table()}) {
     for (const PyramidWeights& weights : table->octaves()) {
       for (PyramidPass pass : weights) {
@@ -56,7 +56,7 @@ TEST(PyramidWeights, PassesGrowWithTheLogarithmOfTheRadius) {
 }
 
 // The shares of the levels in a Gaussian of boxes, summed numerically from the definition.
-TEST(PyramidWeights, UntrainedShareIsThatOfTheLevelAmongItselfAndCoarserOnes) {
+TEST(PyramidWeights, UntrainedShareFollowsTheLevels) {
   const float radius = 23.0f;
   const double c = 2.0 * std::numbers::pi * std::pow(pyramid_sigma(radius), 2.0);
   const auto density = [&](double level) {
@@ -73,7 +73,7 @@ TEST(PyramidWeights, UntrainedShareIsThatOfTheLevelAmongItselfAndCoarserOnes) {
   }
 }
 
-TEST(PyramidWeights, RadiiBetweenOctavesLieBetween) {
+TEST(PyramidWeights, RadiiBetweenOctavesAreInterpolated) {
   const PyramidTable& table = trained_pyramid_table();
   const float half = std::sqrt(8.0f * 16.0f);
   for (int level = 0; level < 5; ++level) {
@@ -90,12 +90,12 @@ TEST(PyramidWeights, RadiiBetweenOctavesLieBetween) {
   EXPECT_EQ(table.weights(64.0f).size(), 7u);
 }
 
-TEST(PyramidWeights, ARadiusOfZeroPassesTheImageThrough) {
+TEST(PyramidWeights, RadiusZeroKeepsTheImage) {
   const PyramidPass tiny = trained_pyramid_table().at(1e-4f, 0);
   EXPECT_NEAR(tiny.fine[4], 1.0f, 1e-3f);
 }
 
-TEST(PyramidWeights, ATableOfAnotherShapeIsRefused) {
+TEST(PyramidWeights, TableOfAnotherShapeIsRejected) {
   auto octaves = untrained_pyramid_table().octaves();
   octaves[3][1].fine[2] = -0.1f;
   EXPECT_THROW(PyramidTable{octaves}, std::invalid_argument);
@@ -109,7 +109,7 @@ TEST(PyramidWeights, ATableOfAnotherShapeIsRefused) {
   EXPECT_THROW(PyramidTable{octaves}, std::invalid_argument);
 }
 
-TEST(PyramidWeights, TheSourceOfATableHoldsItsNumbersAndItsCommand) {
+TEST(PyramidWeights, SourceOfATableHasItsNumbersAndCommand) {
   const std::string text = pyramid_table_source(untrained_pyramid_table(), "eigenlight some words");
   EXPECT_NE(text.find("// Written by: eigenlight some words\n"), std::string::npos);
   EXPECT_NE(text.find(fmt::format("{:.6e}f", untrained_pyramid_weights(64.0f)[6].fine[4])),

@@ -35,7 +35,7 @@ class SpatialFilters : public testing::TestWithParam<Kind> {
   }
 };
 
-TEST_P(SpatialFilters, FlatLightStaysFlatAtAnySize) {
+TEST_P(SpatialFilters, ConstantLightStaysConstantAtAnySize) {
   for (const Extent extent : kSweepExtents) {
     SpatialCase c(extent);
     for (auto& plane : c.signal) plane.fill(2.5f);
@@ -51,7 +51,7 @@ TEST_P(SpatialFilters, FlatLightStaysFlatAtAnySize) {
 }
 
 // Light that differs between two walls follows their edge, and its noise falls on either side.
-TEST_P(SpatialFilters, AnEdgeOfTheGuideStaysAnEdgeAndNoiseFalls) {
+TEST_P(SpatialFilters, EdgeOfTheGuideIsKeptAndNoiseFalls) {
   SpatialCase c = SpatialCase::corner({128, 48});
   for (int y = 0; y < 48; ++y) {
     for (int x = 0; x < 128; ++x) {
@@ -75,7 +75,7 @@ TEST_P(SpatialFilters, AnEdgeOfTheGuideStaysAnEdgeAndNoiseFalls) {
 
 // Bad values in light without weight, or in guides without surface, leave no trace, and light that
 // is not finite counts as light without weight.
-TEST_P(SpatialFilters, WhatDoesNotCountTouchesNothing) {
+TEST_P(SpatialFilters, UnusablePixelsHaveNoInfluence) {
   SpatialCase clean({100, 70});
   for (auto& plane : clean.signal) {
     for (float& v : plane.storage()) v = std::isfinite(v) ? v : 0.5f;
@@ -103,20 +103,20 @@ TEST_P(SpatialFilters, WhatDoesNotCountTouchesNothing) {
   EXPECT_TRUE(planes_equal(run(dirty), run(clean)));
 }
 
-TEST_P(SpatialFilters, AHoleIsFilledFromItsSurroundings) {
+TEST_P(SpatialFilters, HoleIsFilledFromItsSurroundings) {
   SpatialCase c = SpatialCase::corner({64, 32});
   c.signal[2](10, 10) = kNan;
   EXPECT_NEAR(run(c)[2](10, 10), 1.0f, 1e-5f);
 }
 
-TEST_P(SpatialFilters, NothingUsableGivesZero) {
+TEST_P(SpatialFilters, ResultIsZeroWithoutUsablePixels) {
   SpatialCase c({20, 20});
   c.weight.fill(0.0f);
   for (auto& plane : c.signal) plane.fill(kNan);
   EXPECT_TRUE(planes_equal(run(c), make_planes<3>({20, 20})));
 }
 
-TEST_P(SpatialFilters, GivesTheSameBitsOnAnyNumberOfThreadsAndAgain) {
+TEST_P(SpatialFilters, ThreadCountDoesNotChangeTheBits) {
   const SpatialCase c({191, 107});
   set_thread_count(1);
   const auto filter = GetParam().make(c.extent());
@@ -127,7 +127,7 @@ TEST_P(SpatialFilters, GivesTheSameBitsOnAnyNumberOfThreadsAndAgain) {
   set_thread_count(0);
 }
 
-TEST_P(SpatialFilters, RefusesOtherSizesAndItsOwnInput) {
+TEST_P(SpatialFilters, RejectsOtherSizesAndItsOwnInput) {
   SpatialCase c({20, 20});
   const auto filter = GetParam().make({20, 20});
   Planes<3> out = make_planes<3>({20, 21});

@@ -58,7 +58,7 @@ double mse(const Planes<3>& a, const Planes<3>& b) {
   return sum / (3.0 * static_cast<double>(a[0].extent().pixels()));
 }
 
-TEST(PyramidTraining, TheModelIsTheFilter) {
+TEST(PyramidTraining, ModelMatchesTheFilter) {
   const Picture picture({45, 39}, 3);
   const PyramidExample example = picture.example(16.0f);
   const PyramidTable& table = trained_pyramid_table();
@@ -70,7 +70,7 @@ TEST(PyramidTraining, TheModelIsTheFilter) {
 
 // The derivative of the L1 term jumps where a pixel is exact; with noise to both sides that is
 // rare, and over a small step it does not show.
-TEST(PyramidTraining, GradientsAreThoseOfFiniteDifferences) {
+TEST(PyramidTraining, GradientsMatchFiniteDifferences) {
   const Picture picture({33, 26}, 4);
   const PyramidExample example = picture.example(4.0f, 0.15f);
   PyramidWeights weights = uneven_weights(3);
@@ -99,7 +99,7 @@ TEST(PyramidTraining, GradientsAreThoseOfFiniteDifferences) {
   }
 }
 
-TEST(PyramidTraining, LossIsZeroForEqualImagesAndItsGradientIsThatOfFiniteDifferences) {
+TEST(PyramidTraining, LossGradientMatchesFiniteDifferences) {
   const Planes<3> a = paint_training_image({21, 17}, 1), b = paint_training_image({21, 17}, 2);
   Planes<3> gradient = make_planes<3>({21, 17}), unused = make_planes<3>({21, 17});
   EXPECT_NEAR(image_loss(a, a, gradient).total(), 0.0, 1e-12);
@@ -120,7 +120,7 @@ TEST(PyramidTraining, LossIsZeroForEqualImagesAndItsGradientIsThatOfFiniteDiffer
   }
 }
 
-TEST(PyramidTraining, LowersTheLossAndKeepsTheSymmetriesOfTheSquare) {
+TEST(PyramidTraining, TrainingLowersTheLossAndKeepsSymmetry) {
   std::vector<PyramidExample> examples;
   for (std::uint32_t seed : {1u, 2u}) examples.push_back(Picture({40, 40}, seed).example(4.0f));
   double last = 1e9;
@@ -140,7 +140,7 @@ TEST(PyramidTraining, LowersTheLossAndKeepsTheSymmetriesOfTheSquare) {
   }
 }
 
-TEST(PyramidTraining, StopsWhenToldTo) {
+TEST(PyramidTraining, CallbackStopsTraining) {
   std::vector<PyramidExample> examples;
   examples.push_back(Picture({16, 16}, 1).example(1.0f));
   int steps = 0;
@@ -155,7 +155,7 @@ TEST(PyramidTraining, StopsWhenToldTo) {
 
 // The table that is committed, on pictures that it was not trained on, against the settings of
 // section 5.1(e).
-TEST(PyramidTraining, TheTrainedTableIsCloserToBruteForceThanTheUntrained) {
+TEST(PyramidTraining, TrainedTableIsCloserToBruteForce) {
   const Picture picture({72, 72}, 1001);
   for (const float radius : {1.0f, 3.0f, 8.0f, 16.0f, 24.0f}) {
     const PyramidExample example = picture.example(radius);
@@ -168,7 +168,7 @@ TEST(PyramidTraining, TheTrainedTableIsCloserToBruteForceThanTheUntrained) {
   }
 }
 
-TEST(PyramidTraining, BruteForceIsAGaussianWithoutEdges) {
+TEST(PyramidTraining, BruteForceWithoutEdgesIsAGaussian) {
   Plane<float> attributes({41, 41}, 3), weight({41, 41});
   weight.fill(1.0f);
   Planes<3> signal = make_planes<3>({41, 41}), out = make_planes<3>({41, 41});

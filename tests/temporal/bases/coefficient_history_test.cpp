@@ -30,7 +30,7 @@ struct Memory {
   CoefficientField coefficients, learning_rates;
 };
 
-TEST(CoefficientHistory, OfOneBasisIsTheRunningMean) {
+TEST(CoefficientHistory, SingleBasisLearnsLikeARunningMean) {
   Memory m(3);
   for (int frame = 0; frame < 100; ++frame) {
     m.learn({0.7f, 0.0f, 0.0f});
@@ -41,7 +41,7 @@ TEST(CoefficientHistory, OfOneBasisIsTheRunningMean) {
 }
 
 // R, M and q = M^-1 c written out, for a basis that is born after ten frames.
-TEST(CoefficientHistory, SolvesForQAsTheTwin) {
+TEST(CoefficientHistory, LearningRatesMatchTheReference) {
   Memory m(2);
   for (int frame = 0; frame < 10; ++frame) m.learn({0, 0});
   ASSERT_EQ(m.memory.free_slot(), 1);
@@ -66,7 +66,7 @@ TEST(CoefficientHistory, SolvesForQAsTheTwin) {
   }
 }
 
-TEST(CoefficientHistory, GivesEachBirthTimeAndRunsOutOfSlots) {
+TEST(CoefficientHistory, BirthsAreSpacedAndLimitedBySlots) {
   Memory m(3);
   EXPECT_EQ(m.memory.free_slot(), 0);  // nothing is known yet
   int births = 0;
@@ -83,7 +83,7 @@ TEST(CoefficientHistory, GivesEachBirthTimeAndRunsOutOfSlots) {
   EXPECT_EQ(m.memory.active(), 3);
 }
 
-TEST(CoefficientHistory, ForgetsBasesThatNobodyUses) {
+TEST(CoefficientHistory, UnusedBasesAreRetired) {
   Memory m(3);
   for (int frame = 0; frame < 5; ++frame) m.learn({0, 0, 0});
   m.memory.born(1);
@@ -103,7 +103,7 @@ TEST(CoefficientHistory, ForgetsBasesThatNobodyUses) {
   }
 }
 
-TEST(CoefficientHistory, RoundTripsAndForgetsAtReset) {
+TEST(CoefficientHistory, StateRoundTripsAndResetClears) {
   Memory m(3), other(3), fresh(3);
   for (int frame = 0; frame < 6; ++frame) m.learn({0, 0, 0});
   m.memory.born(1);

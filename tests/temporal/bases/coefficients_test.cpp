@@ -13,7 +13,7 @@
 namespace eigenlight {
 namespace {
 
-// Everything that solve_coefficients needs, from a frame and bases of one image.
+// The inputs of solve_coefficients() from a frame and bases.
 struct Scene {
   explicit Scene(Extent extent, int bases)
       : frame(make_random_frame({.extent = extent, .sky = false, .non_finite = false}, 2)),
@@ -88,9 +88,9 @@ void expect_agreement(Extent extent, int bases, const ShrinkOptions& options, do
   }
 }
 
-TEST(SolveCoefficients, AgreesWithTheTwin) {
+TEST(SolveCoefficients, MatchesTheReference) {
   for (const Extent extent : kSweepExtents) {
-    if (extent.pixels() < 100) continue;  // fewer equations than the twin's elimination can bear
+    if (extent.pixels() < 100) continue;  // too few equations for the elimination of the reference
     for (const int bases : {1, 3, kMaxBases}) {
       expect_agreement(extent, bases, {0.0}, 0.0);
       expect_agreement(extent, bases, {}, 0.0);
@@ -99,7 +99,7 @@ TEST(SolveCoefficients, AgreesWithTheTwin) {
   }
 }
 
-TEST(SolveCoefficients, KeepMoreOfBasesThatWereInUse) {
+TEST(SolveCoefficients, BasesInUseAreShrunkLess) {
   Scene scene({65, 17}, 2);
   scene.set_light({0, 0.02f}, 0.5f);
   const auto sums = scene.sums();
@@ -113,7 +113,7 @@ TEST(SolveCoefficients, KeepMoreOfBasesThatWereInUse) {
   EXPECT_LT(second(1e-3), second(1.0));
 }
 
-TEST(SolveCoefficients, NoGainFallsBelowZero) {
+TEST(SolveCoefficients, GainIsNeverNegative) {
   Scene scene({65, 17}, 1);
   scene.set_light({-3.0f}, 0.0f);
   scene.solve();
@@ -131,8 +131,8 @@ TEST(SolveCoefficients, RecoversAKnownGain) {
   }
 }
 
-// As offsets from 1 gains are good to 3e-8.
-TEST(SolveCoefficients, RecoversTheGainOfALightThatAllButWentOut) {
+// Gains are stored as offsets from 1, which limits their precision to 3e-8.
+TEST(SolveCoefficients, RecoversExtremeGains) {
   for (const int bases : {1, 3}) {
     for (const float gain : {1e-6f, 1e-3f, 1e6f}) {
       Scene scene({65, 33}, bases);
@@ -154,8 +154,8 @@ TEST(SolveCoefficients, RecoversTheGainOfALightThatAllButWentOut) {
   }
 }
 
-// Three pixels always agree on something; many do on a gain of their own noise alone.
-TEST(SolveCoefficients, TakeNoGainFromThreePixels) {
+// Three pixels of noise often agree on a gain.
+TEST(SolveCoefficients, ThreePixelsGiveNoGain) {
   for (std::uint32_t seed = 0; seed < 50; ++seed) {
     Scene scene({3, 1}, 1);
     scene.set_light({0.0f}, 0.5f, seed);
@@ -164,7 +164,7 @@ TEST(SolveCoefficients, TakeNoGainFromThreePixels) {
   }
 }
 
-TEST(SolveCoefficients, RecoversAKnownMixtureWithoutShrinking) {
+TEST(SolveCoefficients, RecoversAKnownMixtureOfBases) {
   Scene scene({191, 107}, 3);
   scene.set_light({0.5f, -0.7f, 0.3f}, 0.0f);
   scene.solve({0.0});
@@ -176,7 +176,7 @@ TEST(SolveCoefficients, RecoversAKnownMixtureWithoutShrinking) {
   }
 }
 
-TEST(SolveCoefficients, OfPureNoiseAreMostlyZeroAndNeverLarge) {
+TEST(SolveCoefficients, NoiseGivesMostlyZeros) {
   int zero = 0, all = 0;
   for (std::uint32_t seed = 0; seed < 8; ++seed) {
     Scene scene({191, 107}, 3);
@@ -190,12 +190,12 @@ TEST(SolveCoefficients, OfPureNoiseAreMostlyZeroAndNeverLarge) {
       }
     }
   }
-  // With 4 variances taken off, a normal coefficient survives beyond 2 sigma: 4.6 %.
+  // 4 variances are subtracted, so 4.6 % of normal coefficients, those beyond 2 sigma, survive.
   EXPECT_GT(zero, all * 88 / 100);
   EXPECT_LT(zero, all);
 }
 
-TEST(SolveCoefficients, IgnoreBasesWithoutEnergy) {
+TEST(SolveCoefficients, BasesWithoutEnergyGetZero) {
   Scene full({65, 17}, 1), wide({65, 17}, 4);
   wide.combine(1, 0, 1, 0, 2);
   wide.combine(2, 0, 1, 0, 2);
@@ -217,8 +217,8 @@ TEST(SolveCoefficients, IgnoreBasesWithoutEnergy) {
   }
 }
 
-// Bases that say the same must not blow up, and what they say together must still be right.
-TEST(SolveCoefficients, BearDuplicateAndNearlyParallelBases) {
+// Coefficients of parallel bases must stay small, and their sum must be right.
+TEST(SolveCoefficients, DuplicateAndNearlyParallelBasesShareTheLight) {
   for (const float apart : {0.0f, 1e-6f, 1e-3f}) {
     Scene scene({65, 17}, 3);
     scene.combine(1, 1.0f, 0, apart, 2);
@@ -232,7 +232,7 @@ TEST(SolveCoefficients, BearDuplicateAndNearlyParallelBases) {
   }
 }
 
-TEST(SolveCoefficients, AreZeroWithoutHistoryAndCheckTheNumberOfSums) {
+TEST(SolveCoefficients, EmptySumsGiveZeros) {
   CoefficientField field({65, 17}, 3);
   const auto count = static_cast<std::size_t>(field.grid().count());
   field.tile(0)[0] = 3.0f;
@@ -240,6 +240,11 @@ TEST(SolveCoefficients, AreZeroWithoutHistoryAndCheckTheNumberOfSums) {
   for (int i = 0; i < field.grid().count(); ++i) {
     for (const float delta : field.tile(i)) EXPECT_EQ(delta, 0.0f);
   }
+}
+
+TEST(SolveCoefficients, RejectsWrongNumbersOfSums) {
+  CoefficientField field({65, 17}, 3);
+  const auto count = static_cast<std::size_t>(field.grid().count());
   EXPECT_THROW(solve_coefficients(std::vector<TileSums>(count + 1), {}, {}, field),
                std::invalid_argument);
   const std::vector<double> expected(3 * count - 1);
@@ -247,50 +252,7 @@ TEST(SolveCoefficients, AreZeroWithoutHistoryAndCheckTheNumberOfSums) {
                std::invalid_argument);
 }
 
-TEST(CoefficientField, InterpolatesAsTheTwinForAllExtents) {
-  for (const Extent extent : kSweepExtents) {
-    CoefficientField field(extent, 2);
-    for (int i = 0; i < field.grid().count(); ++i) {
-      PixelRandom random(3, i, 0);
-      for (float& delta : field.tile(i)) delta = random.between(-1.0f, 1.0f);
-    }
-    CoefficientRows out;
-    for (int i = 0; i < field.grid().count(); ++i) {
-      const Tile tile = field.grid().tile(i);
-      for (int y = tile.y0; y < tile.y1; ++y) {
-        field.rows({tile.x0, y, tile.x1, y + 1}, 2, out);
-        for (int k = 0; k < 2; ++k) {
-          for (int x = tile.x0; x < tile.x1; ++x) {
-            ASSERT_NEAR(out[k][x - tile.x0], reference::coefficient_at(field, x, y, k), 2e-6)
-                << x << ", " << y;
-          }
-        }
-      }
-    }
-  }
-}
-
-TEST(CoefficientField, HasNoStepWhereTilesMeet) {
-  CoefficientField field({191, 107}, 1);
-  for (int i = 0; i < field.grid().count(); ++i) field.tile(i)[0] = i % 2 == 0 ? 1.0f : -1.0f;
-  const auto value = [&](int x, int y) {
-    CoefficientRows out;
-    const int first = x / kCoefficientTile * kCoefficientTile;
-    field.rows({first, y, x + 1, y + 1}, 1, out);
-    return out[0][x - first];
-  };
-  // Bilinear between centers 32 pixels and 2 apart: at most 2/32 a pixel along a row, and along a
-  // column too.
-  constexpr float kSlope = 2.0f / kCoefficientTile + 1e-5f;
-  for (int y = 0; y + 1 < 107; ++y) {
-    for (int x = 0; x + 1 < 191; ++x) {
-      ASSERT_LE(std::abs(value(x + 1, y) - value(x, y)), kSlope) << x << ", " << y;
-      ASSERT_LE(std::abs(value(x, y + 1) - value(x, y)), kSlope) << x << ", " << y;
-    }
-  }
-}
-
-TEST(ShrinkOptions, RefusesWhatIsOutOfRange) {
+TEST(ShrinkOptions, RejectsValuesOutOfRange) {
   const FloatTrapsOff nan_is_meant;
   EXPECT_THROW(ShrinkOptions{-1.0}.validate(), std::invalid_argument);
   EXPECT_THROW(ShrinkOptions{101.0}.validate(), std::invalid_argument);

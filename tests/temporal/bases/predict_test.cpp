@@ -3,10 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "frame/float_traps.h"
 #include "tests/reference/predict.h"
-#include "tests/support/extents.h"
+#include "tests/support/kernel_test.h"
 #include "tests/support/random_frames.h"
 #include "tests/support/targets.h"
 
@@ -29,10 +30,9 @@ struct Result {
   }
   void run(const BasisField& bases, const CoefficientField& coefficients, const Frame& frame) {
     copy_planes(frame.lights[0].radiance, residual);
-    for (int i = 0; i < coefficients.grid().count(); ++i) {
-      predict_tile(bases, coefficients, coefficients.grid().tile(i),
-                   {residual, innovation, expected, variance});
-    }
+    for_each_tile(coefficients.grid(), [&](const Rect& tile) {
+      predict_tile(bases, coefficients, tile, {residual, innovation, expected, variance});
+    });
   }
   Planes<3> residual;
   Plane<float> innovation, expected, variance;
@@ -56,29 +56,30 @@ void expect_close(const Result& result, const reference::Prediction& twin, int x
   ASSERT_NEAR(result.variance(x, y), 0.5 * twin.variance_factor, 1e-6);
 }
 
-TEST(Predict, AgreesWithTheTwinOnEveryTarget) {
+EL_KERNEL_TEST(Predict, MatchesTheReference) {
   const FloatTrapsOff nan_is_meant;
-  for (const Extent extent : kSweepExtents) {
-    const Frame frame = make_random_frame({.extent = extent}, 2);
-    for (const int bases : {1, 3, kMaxBases}) {
-      const BasisField field = random_bases(extent, bases, 8);
-      const CoefficientField coefficients = random_coefficients(extent, bases);
-      for_each_target([&] {
-        Result result(extent);
-        result.run(field, coefficients, frame);
-        for (int y = 0; y < extent.height; ++y) {
-          for (int x = 0; x < extent.width; ++x) {
-            const auto twin =
-                reference::predict(field, coefficients, frame.lights[0].radiance, x, y);
-            expect_close(result, twin, x, y);
-          }
-        }
-      });
+  const Frame frame = make_random_frame({.extent = extent}, 2);
+  for (const int bases : {1, 3, kMaxBases}) {
+    const BasisField field = random_bases(extent, bases, 8);
+    const CoefficientField coefficients = random_coefficients(extent, bases);
+    std::vector<reference::Prediction> twins;
+    for (int y = 0; y < extent.height; ++y) {
+      for (int x = 0; x < extent.width; ++x) {
+        twins.push_back(reference::predict(field, coefficients, frame.lights[0].radiance, x, y));
+      }
     }
+    on_every_target([&] {
+      Result result(extent);
+      result.run(field, coefficients, frame);
+      auto twin = twins.begin();
+      for (int y = 0; y < extent.height; ++y) {
+        for (int x = 0; x < extent.width; ++x) expect_close(result, *twin++, x, y);
+      }
+    });
   }
 }
 
-TEST(Predict, WithoutHistoryTheLightIsLeftAndNothingConfirmed) {
+TEST(Predict, PixelsWithoutHistoryKeepTheirLightAsResidual) {
   const Extent extent{5, 3};
   const Frame frame = make_random_frame({.extent = extent, .sky = false}, 2);
   Result result(extent);
@@ -95,7 +96,7 @@ TEST(Predict, WithoutHistoryTheLightIsLeftAndNothingConfirmed) {
   }
 }
 
-TEST(Predict, VarianceFollowsTheGainBeyondAFactorOfTwo) {
+TEST(Predict, VarianceFollowsGainsBeyondAFactorOfTwo) {
   const Extent extent{5, 3};
   const Frame frame = make_random_frame({.extent = extent, .sky = false}, 2);
   for (const auto& [gain, factor] : {std::pair(0.0f, 0.0f),
@@ -114,9 +115,9 @@ TEST(Predict, VarianceFollowsTheGainBeyondAFactorOfTwo) {
   }
 }
 
-// A gain of 1e30 of a light of 1e-20 is light of 1e10; at a pixel beside it that had light of 1
-// float cannot hold the variance.
-TEST(Predict, NoGainMakesAVarianceInfinite) {
+// A gain of 1e30 turns light of 1e-20 into 1e10. At a neighbor with light of 1, the variance would
+// overflow.
+TEST(Predict, VarianceStaysFiniteForHugeGains) {
   const Extent extent{5, 3};
   const Frame frame = make_random_frame({.extent = extent, .sky = false}, 2);
   CoefficientField coefficients(extent, 1);

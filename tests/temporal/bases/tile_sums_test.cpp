@@ -7,22 +7,22 @@
 
 #include "frame/float_traps.h"
 #include "tests/reference/tile_sums.h"
-#include "tests/support/extents.h"
+#include "tests/support/kernel_test.h"
 #include "tests/support/random_frames.h"
 #include "tests/support/targets.h"
 
 namespace eigenlight {
 namespace {
 
-// Sums along a row are in float: 64 terms of either sign, each within half an ulp of the largest
-// partial sum. 1e-5 of the sum of magnitudes holds for all orders that targets add in.
+// Sums along a row of 64 terms are in float. 1e-5 of the sum of magnitudes bounds their rounding
+// for every order of summation.
 constexpr double kTolerance = 1e-5;
 
 void expect_sums_near(const TileSums& found, const TileSums& wanted, int bases) {
   EXPECT_EQ(found.pixels, wanted.pixels);
   for (int j = 0; j < bases; ++j) {
     const auto jj = static_cast<std::size_t>(packed(j, j));
-    // Cauchy-Schwarz bounds the magnitudes of what went into mixed sums.
+    // Cauchy-Schwarz bounds the magnitudes of the terms of mixed sums.
     const auto at = static_cast<std::size_t>(j);
     EXPECT_NEAR(found.innovation[at], wanted.innovation[at],
                 kTolerance * std::sqrt(wanted.scatter_rr[at] * wanted.pixels) + 1e-300)
@@ -41,32 +41,30 @@ void expect_sums_near(const TileSums& found, const TileSums& wanted, int bases) 
   }
 }
 
-TEST(TileSums, AgreeWithTheTwinOnEveryTarget) {
+EL_KERNEL_TEST(TileSums, MatchTheReference) {
   const FloatTrapsOff nan_is_meant;
-  for (const Extent extent : kSweepExtents) {
-    const Frame frame = make_random_frame({.extent = extent}, 2);
-    const Plane<float> variance = random_plane(extent, 5, 0.05f, 0.6f);
-    for (const int bases : {1, 3, kMaxBases}) {
-      const BasisField field = random_bases(extent, bases, 8);
-      const SumInputs in{field, frame.lights[0].radiance, variance};
-      for (const int side : {32, kSegment}) {
-        const TileGrid grid(extent, side, 32);
-        for (int index = 0; index < grid.count(); ++index) {
-          const Tile tile = grid.tile(index);
-          const TileSums wanted = reference::tile_sums(in, tile);
-          for_each_target([&] {
-            TileSums sums;
-            accumulate_tile(in, tile, sums);
-            admit_outliers(in, tile, sums);
-            expect_sums_near(sums, wanted, bases);
-          });
-        }
-      }
+  const Frame frame = make_random_frame({.extent = extent}, 2);
+  const Plane<float> variance = random_plane(extent, 5, 0.05f, 0.6f);
+  for (const int bases : {1, 3, kMaxBases}) {
+    const BasisField field = random_bases(extent, bases, 8);
+    const SumInputs in{field, frame.lights[0].radiance, variance};
+    for (const int side : {32, kSegment}) {
+      const TileGrid grid(extent, side, 32);
+      PerTile<TileSums> wanted(grid);
+      for (int i = 0; i < grid.count(); ++i) wanted[i] = reference::tile_sums(in, grid.tile(i));
+      on_every_target([&] {
+        PerTile<TileSums> sums(grid);
+        for_each_tile(grid, [&](const Tile& tile) {
+          accumulate_tile(in, tile, sums[tile]);
+          admit_outliers(in, tile, sums[tile]);
+        });
+        for (int i = 0; i < grid.count(); ++i) expect_sums_near(sums[i], wanted[i], bases);
+      });
     }
   }
 }
 
-TEST(TileSums, AddToWhatIsThere) {
+TEST(TileSums, AccumulateAddsToExistingSums) {
   const Extent extent{32, 32};
   const Frame frame = make_random_frame({.extent = extent}, 2);
   const Plane<float> variance = random_plane(extent, 5, 0.05f, 0.6f);
@@ -86,8 +84,8 @@ TEST(TileSums, AddToWhatIsThere) {
   EXPECT_EQ(added.pixels, 2.0 * once.pixels);
 }
 
-// A pixel counts only with history and finite light: each reason alone leaves it out.
-TEST(TileSums, LeaveOutWhatCannotBeUsed) {
+// Missing history and non-finite light each exclude a pixel.
+TEST(TileSums, LeaveOutUnusablePixels) {
   const FloatTrapsOff nan_is_meant;
   const Extent extent{5, 3};
   Frame frame = make_random_frame({.extent = extent, .sky = false, .non_finite = false}, 2);
@@ -120,8 +118,8 @@ TEST(TileSums, LeaveOutWhatCannotBeUsed) {
   });
 }
 
-TEST(TileSums, OfAGainKnowIt) {
-  // u = 1.5 V_0 everywhere: <V_0, u - V_0> is half of <V_0, V_0>.
+TEST(TileSums, RecoverAGain) {
+  // With u = 1.5 V_0 everywhere, <V_0, u - V_0> is half of <V_0, V_0>.
   const Extent extent{32, 32};
   Frame frame = make_random_frame({.extent = extent, .sky = false, .non_finite = false}, 2);
   const Plane<float> variance = random_plane(extent, 5, 0.05f, 0.6f);
@@ -140,8 +138,8 @@ TEST(TileSums, OfAGainKnowIt) {
   EXPECT_NEAR(sums.innovation[0], 0.5 * sums.gram[0], 1e-5 * sums.gram[0]);
 }
 
-// A row of nonsense is no more a light that changed than as many pixels elsewhere are.
-TEST(TileSums, HoldBackALineOfOutliersAndFollowATileOfThem) {
+// One row of outliers has little influence; half a tile of them is a change of light.
+TEST(TileSums, FewOutliersLoseTheirInfluence) {
   const Extent extent{32, 32};
   Frame frame = make_random_frame({.extent = extent, .sky = false, .non_finite = false}, 2);
   BasisField field(extent, 1);
@@ -154,14 +152,14 @@ TEST(TileSums, HoldBackALineOfOutliersAndFollowATileOfThem) {
       for (int y = 0; y < rows; ++y) std::fill(plane.row(y), plane.row(y) + 32, -5.0f);
     }
     TileSums sums;
-    // In two parts: which pixels are few is decided for the whole tile.
+    // The sums come in two parts, but the share of outliers is that of the whole tile.
     accumulate_tile({field, frame.lights[0].radiance, variance}, {0, 0, 32, 1}, sums);
     accumulate_tile({field, frame.lights[0].radiance, variance}, {0, 1, 32, 32}, sums);
     admit_outliers({field, frame.lights[0].radiance, variance}, {0, 0, 32, 32}, sums);
     return 1.0 + sums.innovation[0] / sums.gram[0];
   };
   for_each_target([&] {
-    EXPECT_NEAR(gain(1), 1.0, 0.02);  // not held back, 1 - 6 / 32
+    EXPECT_NEAR(gain(1), 1.0, 0.02);  // with full influence it would be 1 - 6 / 32
     EXPECT_NEAR(gain(16), -2.0, 1e-5);
   });
 }

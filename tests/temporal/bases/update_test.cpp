@@ -4,11 +4,11 @@
 
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "tests/reference/update.h"
-#include "tests/support/extents.h"
+#include "tests/support/kernel_test.h"
 #include "tests/support/random_frames.h"
-#include "tests/support/targets.h"
 
 namespace eigenlight {
 namespace {
@@ -35,7 +35,7 @@ struct Scene {
     }
   }
 
-  // With and without history, each with and without a usable sample.
+  // Pixels with and without history, each with and without a usable sample.
   void fill(int x, int y) {
     PixelRandom random(6, x, y);
     const bool usable = random.uniform() < 0.9f;
@@ -49,7 +49,7 @@ struct Scene {
       residual[c](x, y) = usable ? random.between(0.0f, 2.0f) - prediction
                                  : std::numeric_limits<float>::quiet_NaN();
     }
-    // Slots out of use hold nothing.
+    // Unused slots are 0.
     for (int c = 0; c < 3; ++c) {
       for (int k = active; k < field.bases(); ++k) field.value(x, y, c, k) = 0.0f;
     }
@@ -60,9 +60,9 @@ struct Scene {
             old_age,      new_age,        active,   newborn};
   }
   void run() {
-    for (int i = 0; i < coefficients.grid().count(); ++i) {
-      update_tile(in(), coefficients.grid().tile(i), {field, estimate});
-    }
+    for_each_tile(coefficients.grid(), [&](const Rect& tile) {
+      update_tile(in(), tile, {field, estimate});
+    });
   }
 
   BasisField field;
@@ -74,7 +74,7 @@ struct Scene {
 };
 
 void expect_pixel(const Scene& scene, const reference::Updated& twin, int x, int y) {
-  // Products and sums of values of size 1: a few ulp; eight of them in the estimate.
+  // Products and sums of values of size 1 are exact to a few ulp; the estimate adds eight of them.
   ASSERT_NEAR(scene.field.age(x, y), twin.age, 1e-6 * twin.age);
   for (int c = 0; c < 3; ++c) {
     const auto channel = static_cast<std::size_t>(c);
@@ -87,35 +87,38 @@ void expect_pixel(const Scene& scene, const reference::Updated& twin, int x, int
   }
 }
 
-void expect_agreement(Scene before) {
+void expect_agreement(const Scene& before) {
   const Extent extent = before.samples.extent();
-  for_each_target([&] {
+  std::vector<reference::Updated> twins;
+  for (int y = 0; y < extent.height; ++y) {
+    for (int x = 0; x < extent.width; ++x) {
+      twins.push_back(reference::update(before.in(), before.field, {x, y}));
+    }
+  }
+  on_every_target([&] {
     Scene after(extent, before.field.bases(), before.active);
     after.newborn = before.newborn;
     after.run();
+    auto twin = twins.begin();
     for (int y = 0; y < extent.height; ++y) {
-      for (int x = 0; x < extent.width; ++x) {
-        expect_pixel(after, reference::update(before.in(), before.field, {x, y}), x, y);
-      }
+      for (int x = 0; x < extent.width; ++x) expect_pixel(after, *twin++, x, y);
     }
   });
 }
 
-TEST(Update, AgreesWithTheTwinOnEveryTarget) {
-  for (const Extent extent : kSweepExtents) {
-    for (const int bases : {1, 3, kMaxBases}) expect_agreement(Scene(extent, bases));
-  }
+EL_KERNEL_TEST(Update, MatchesTheReference) {
+  for (const int bases : {1, 3, kMaxBases}) expect_agreement(Scene(extent, bases));
 }
 
-TEST(Update, OfSlotsInUseAndBirthsAgreesWithTheTwin) {
-  expect_agreement(Scene({65, 17}, 4, 2));
-  Scene birth({65, 17}, 4, 2);
-  birth.newborn = 2;
-  expect_agreement(std::move(birth));
+EL_KERNEL_TEST(Update, MatchesTheReferenceWithUnusedSlotsAndBirths) {
+  Scene scene(extent, 4, 2);
+  expect_agreement(scene);
+  scene.newborn = 2;
+  expect_agreement(scene);
 }
 
-// With one basis, steady light and full weights this is the running mean.
-TEST(Update, OfSteadyLightIsTheMeanOfAllFrames) {
+// With one basis, steady light and full weights, the update is a running mean.
+TEST(Update, SteadyLightGivesTheMeanOfAllFrames) {
   const Extent extent{5, 3};
   Scene scene(extent, 1);
   scene.field = BasisField(extent, 1);
@@ -139,7 +142,7 @@ TEST(Update, OfSteadyLightIsTheMeanOfAllFrames) {
   }
 }
 
-// h = c . q of a pixel.
+// Leverage h = c . q of a pixel.
 double leverage(const Scene& scene, int x, int y) {
   double h = reference::coefficient_at(scene.learning_rates, x, y, 0);
   for (int k = 1; k < scene.active; ++k) {
@@ -149,7 +152,7 @@ double leverage(const Scene& scene, int x, int y) {
   return h;
 }
 
-TEST(Update, NewPixelsExplainTheirOwnLight) {
+TEST(Update, NewPixelsReproduceTheirOwnLight) {
   Scene scene({65, 17}, 3);
   const Scene before({65, 17}, 3);
   scene.run();
@@ -160,7 +163,7 @@ TEST(Update, NewPixelsExplainTheirOwnLight) {
       const bool usable = before.samples(x, y) > 0.0f;
       ++(usable ? fresh : empty);
       for (std::size_t c = 0; c < 3; ++c) {
-        // Exactly where c and q belong together; interpolated ones may give up to h < 1 less.
+        // Exact where c and q are those of one tile; between tiles h can be below 1.
         const double h = leverage(before, x, y);
         const float wanted = usable ? before.residual[c](x, y) : 0.0f;
         EXPECT_NEAR(scene.estimate[c](x, y), wanted * std::min(h, 1.0), 1e-5);

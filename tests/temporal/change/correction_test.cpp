@@ -75,7 +75,7 @@ struct Scene {
   Plane<float> innovation, age, samples, variance;
 };
 
-TEST(Correction, IsSilentUnderSteadyLight) {
+TEST(Correction, SteadyLightGivesNoCorrection) {
   Scene scene({191, 107});
   Correction correction({191, 107}, {});
   EXPECT_EQ(scene.run(correction), 0.0);
@@ -88,7 +88,7 @@ TEST(Correction, IsSilentUnderSteadyLight) {
   }
 }
 
-TEST(Correction, FollowsLightThatChangedAllOver) {
+TEST(Correction, FollowsAChangeOfAllLight) {
   for (const float mean : {0.2f, 3.0f}) {
     Scene scene({191, 107});
     scene.set_light(mean);
@@ -97,7 +97,7 @@ TEST(Correction, FollowsLightThatChangedAllOver) {
   }
 }
 
-TEST(Correction, TakesFromTheInnovationWhatItGives) {
+TEST(Correction, InnovationLosesTheCorrection) {
   Scene scene({191, 107});
   scene.set_light(2.0f, 100);
   const Plane<float> before = scene.innovation.clone();
@@ -111,7 +111,7 @@ TEST(Correction, TakesFromTheInnovationWhatItGives) {
   }
 }
 
-TEST(Correction, LeavesFarTilesAlone) {
+TEST(Correction, DistantTilesDoNotChange) {
   const Extent extent{512, 64};
   Scene scene(extent);
   scene.set_light(2.0f, 400);
@@ -125,7 +125,7 @@ TEST(Correction, LeavesFarTilesAlone) {
   EXPECT_GE(correction.skipped(), 192 * 64);
 }
 
-TEST(Correction, IsZeroAgainAfterLightHasSettled) {
+TEST(Correction, CorrectionEndsWhenLightHasSettled) {
   Scene scene({65, 33});
   Correction correction({65, 33}, {});
   scene.set_light(3.0f);
@@ -137,7 +137,7 @@ TEST(Correction, IsZeroAgainAfterLightHasSettled) {
   }
 }
 
-TEST(Correction, UnconfirmedPixelsNeitherGiveNorTake) {
+TEST(Correction, UnconfirmedPixelsAreIgnored) {
   Scene scene({65, 33});
   scene.set_light(3.0f);
   scene.samples(30, 15) = 0.0f;
@@ -150,7 +150,7 @@ TEST(Correction, UnconfirmedPixelsNeitherGiveNorTake) {
 }
 
 // Cells of pixels without history once gave a residual of 0, which pulled down what is beside them.
-TEST(Correction, ARegionWithoutHistoryDoesNotPullDownWhatIsBesideIt) {
+TEST(Correction, RegionWithoutHistoryDoesNotDarkenItsNeighbors) {
   Scene whole({96, 64}), half({96, 64});
   whole.set_light(3.0f);
   half.set_light(3.0f);
@@ -170,7 +170,7 @@ TEST(Correction, ARegionWithoutHistoryDoesNotPullDownWhatIsBesideIt) {
 }
 
 // What the last frame needed is filled while counting, the rest afterwards.
-TEST(Correction, CellsFilledAheadChangeNoBit) {
+TEST(Correction, PlacingCellsEarlyDoesNotChangeTheBits) {
   const Extent extent{191, 107};
   Correction seasoned(extent, {}), fresh(extent, {});
   Scene left(extent);
@@ -187,7 +187,7 @@ TEST(Correction, CellsFilledAheadChangeNoBit) {
   }
 }
 
-TEST(Correction, BlocksThatChangeAreCountedAgain) {
+TEST(Correction, ChangedBlocksAreCountedAgain) {
   const Extent extent{191, 107};
   Correction again(extent, {}), once(extent, {});
   Scene changed(extent), wanted(extent);
@@ -209,7 +209,7 @@ TEST(Correction, BlocksThatChangeAreCountedAgain) {
   EXPECT_TRUE(planes_equal(changed.innovation, wanted.innovation));
 }
 
-TEST(Correction, RunsAtAnySizeWithTheSameBitsForAnyNumberOfThreads) {
+TEST(Correction, ThreadCountDoesNotChangeTheBitsAtAnySize) {
   for (const Extent extent : kSweepExtents) {
     Scene one(extent), three(extent);
     one.set_light(2.0f);
@@ -224,7 +224,7 @@ TEST(Correction, RunsAtAnySizeWithTheSameBitsForAnyNumberOfThreads) {
   }
 }
 
-TEST(CorrectionOptions, RefusesWhatIsOutOfRange) {
+TEST(CorrectionOptions, RejectsValuesOutOfRange) {
   const FloatTrapsOff nan_is_meant;
   const auto refused = [](const CorrectionOptions& options) {
     EXPECT_THROW(Correction({8, 8}, options), std::invalid_argument);

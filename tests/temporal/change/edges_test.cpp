@@ -4,7 +4,7 @@
 
 #include "frame/float_traps.h"
 #include "tests/reference/edges.h"
-#include "tests/support/extents.h"
+#include "tests/support/kernel_test.h"
 #include "tests/support/random_frames.h"
 #include "tests/support/targets.h"
 
@@ -14,12 +14,12 @@ namespace {
 Plane<std::uint8_t> edges(const Frame& frame) {
   Plane<std::uint8_t> edge(frame.extent());
   edge.fill(7);
-  const TileGrid grid = stage_tiles(frame.extent());
-  for (int i = 0; i < grid.count(); ++i) find_edges(frame, {}, grid.tile(i), edge);
+  for_each_tile(stage_tiles(frame.extent()),
+                [&](const Rect& tile) { find_edges(frame, {}, tile, edge); });
   return edge;
 }
 
-// A wall that faces the camera and moves by a pixel and a half a frame.
+// A wall that faces the camera and moves by 1.5 pixels per frame.
 Frame wall(Extent extent) {
   Frame frame = make_random_frame({.extent = extent, .sky = false, .disturbed = false}, 2);
   frame.camera = look_at({0, 0, 0}, {0, 0, 1}, {0, 1, 0}, 60.0f, extent);
@@ -44,51 +44,45 @@ std::vector<glm::ivec2> found(const Frame& frame) {
   return found;
 }
 
-TEST(Edges, AgreeWithTheTwinOnEveryTarget) {
+EL_KERNEL_TEST(Edges, MatchTheReference) {
   const FloatTrapsOff nan_is_meant;
-  for (const Extent extent : kSweepExtents) {
-    const Frame frame = make_random_frame({.extent = extent}, 2);
-    for_each_target([&] {
-      const Plane<std::uint8_t> edge = edges(frame);
-      for (int y = 0; y < extent.height; ++y) {
-        for (int x = 0; x < extent.width; ++x) {
-          const reference::Edge twin = reference::edge(frame, {}, {x, y});
-          if (twin.margin < 1e-5) continue;  // float noise of a dot product
-          ASSERT_EQ(edge(x, y), twin.found ? 1 : 0) << x << ", " << y;
-        }
-      }
-    });
-  }
-}
-
-TEST(Edges, ForgetSoonerThanTheirSurroundingsButNoSampleOfThisFrame) {
-  for (const Extent extent : kSweepExtents) {
-    const Plane<float> samples = random_plane(extent, 4, 1.0f, 30.0f);
-    const Plane<float> before = random_plane(extent, 5, 0.0f, 64.0f);
-    Plane<std::uint8_t> edge(extent);
+  const Frame frame = make_random_frame({.extent = extent}, 2);
+  on_every_target([&] {
+    const Plane<std::uint8_t> edge = edges(frame);
     for (int y = 0; y < extent.height; ++y) {
-      for (int x = 0; x < extent.width; ++x) edge(x, y) = PixelRandom(6, x, y).uniform() < 0.3f;
+      for (int x = 0; x < extent.width; ++x) {
+        const reference::Edge twin = reference::edge(frame, {}, {x, y});
+        if (twin.margin < 1e-5) continue;  // float noise of a dot product
+        ASSERT_EQ(edge(x, y), twin.found ? 1 : 0) << x << ", " << y;
+      }
     }
-    for_each_target([&] {
-      Plane<float> age = before.clone();
-      const TileGrid grid = stage_tiles(extent);
-      for (int i = 0; i < grid.count(); ++i) {
-        shorten_ages(edge, samples, {18.0f, 12.0f}, grid.tile(i), age);
-      }
-      for (int y = 0; y < extent.height; ++y) {
-        for (int x = 0; x < extent.width; ++x) {
-          const float most = std::max(edge(x, y) != 0 ? 12.0f : 18.0f, samples(x, y));
-          ASSERT_EQ(age(x, y), std::min(before(x, y), most)) << x << ", " << y;
-        }
-      }
-    });
-  }
+  });
 }
 
-TEST(Edges, AWallHasNoneNotEvenBesideTheImage) {
-  for (const Extent extent : kSweepExtents) {
-    for_each_target([&] { EXPECT_TRUE(found(wall(extent)).empty()); });
+EL_KERNEL_TEST(ShortenAges, MatchesTheReference) {
+  const Plane<float> samples = random_plane(extent, 4, 1.0f, 30.0f);
+  const Plane<float> before = random_plane(extent, 5, 0.0f, 64.0f);
+  Plane<std::uint8_t> edge(extent);
+  for (int y = 0; y < extent.height; ++y) {
+    for (int x = 0; x < extent.width; ++x) edge(x, y) = PixelRandom(6, x, y).uniform() < 0.3f;
   }
+  on_every_target([&] {
+    Plane<float> age = before.clone();
+    for_each_tile(stage_tiles(extent), [&](const Rect& tile) {
+      shorten_ages(edge, samples, {18.0f, 12.0f}, tile, age);
+    });
+    for (int y = 0; y < extent.height; ++y) {
+      for (int x = 0; x < extent.width; ++x) {
+        const double longest = edge(x, y) != 0 ? 12.0 : 18.0;
+        ASSERT_EQ(age(x, y), reference::shortened_age(before(x, y), samples(x, y), longest))
+            << x << ", " << y;
+      }
+    }
+  });
+}
+
+EL_KERNEL_TEST(Edges, WallHasNoEdges) {
+  on_every_target([&] { EXPECT_TRUE(found(wall(extent)).empty()); });
 }
 
 TEST(Edges, BothSidesOfAStepAreEdges) {
@@ -103,14 +97,14 @@ TEST(Edges, BothSidesOfAStepAreEdges) {
   });
 }
 
-TEST(Edges, ALonePixelOfAnotherObjectMarksItselfAndItsNeighbors) {
+TEST(Edges, PixelOfAnotherObjectMarksItselfAndItsNeighbors) {
   Frame frame = wall({65, 17});
   frame.surface.id(0, 0) = 7;
   frame.surface.id(40, 9) = 7;
   for_each_target([&] { EXPECT_EQ(found(frame).size(), 3U + 5U); });
 }
 
-TEST(Edges, WhatCameFromWholePixelsIsNone) {
+TEST(Edges, MotionByWholePixelsHasNoEdges) {
   Frame frame = wall({65, 17});
   frame.surface.id(40, 9) = 7;
   for (const float motion : {1e-4f, -3.0f}) {

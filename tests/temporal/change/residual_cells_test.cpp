@@ -9,7 +9,7 @@
 
 #include "tests/reference/residual_cells.h"
 #include "tests/support/compare.h"
-#include "tests/support/extents.h"
+#include "tests/support/kernel_test.h"
 #include "tests/support/random_frames.h"
 #include "tests/support/targets.h"
 
@@ -18,7 +18,7 @@ namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-// Tilted planes, some pixels unconfirmed with light that is not a number.
+// Tilted planes; some pixels are unconfirmed and have NaN light.
 struct Scene {
   explicit Scene(Extent extent)
       : guides(make_random_frame({.extent = extent, .disturbed = false, .non_finite = false}, 2)),
@@ -46,17 +46,15 @@ struct Scene {
     return {guides, residual, innovation, age, samples, variance};
   }
   void load() {
-    const TileGrid grid = stage_tiles(cells.extent());
-    for (int i = 0; i < grid.count(); ++i) {
-      place_cells(guides.surface, grid.tile(i), cells);
-      load_cells(in(), grid.tile(i), cells);
-    }
+    for_each_tile(stage_tiles(cells.extent()), [&](const Rect& tile) {
+      place_cells(guides.surface, tile, cells);
+      load_cells(in(), tile, cells);
+    });
   }
   void spread() {
-    const TileGrid grid(guides.extent(), 32, 32);
-    for (int i = 0; i < grid.count(); ++i) {
-      spread_cells(cells, guides, grid.tile(i), {correction, innovation});
-    }
+    for_each_tile(TileGrid(guides.extent(), 32, 32), [&](const Rect& tile) {
+      spread_cells(cells, guides, tile, {correction, innovation});
+    });
   }
 
   Frame guides;
@@ -65,55 +63,55 @@ struct Scene {
   ResidualCells cells;
 };
 
-TEST(ResidualCells, AgreeWithTheirTwinOnEveryTarget) {
-  for_each_target([] {
-    for (const Extent extent : kSweepExtents) {
-      Scene scene(extent);
-      scene.load();
-      for (int y = 0; y < scene.cells.extent().height; ++y) {
-        for (int x = 0; x < scene.cells.extent().width; ++x) {
-          const reference::Cell twin = reference::cell(scene.in(), x, y);
-          ASSERT_EQ(scene.cells.guides.surface.id(x, y), twin.id) << x << ", " << y;
-          ASSERT_EQ(scene.cells.count(x, y), twin.count);
-          const float depth = scene.guides.surface.depth(2 * x, 2 * y);
-          ASSERT_EQ(scene.cells.guides.surface.depth(x, y),
-                    twin.count > 0.0 ? depth : std::numeric_limits<float>::infinity());
-          ASSERT_NEAR(scene.cells.noise(x, y), twin.noise, 1e-5 * twin.noise);
-          for (std::size_t c = 0; c < 3; ++c) {
-            ASSERT_NEAR(scene.cells.mean[c](x, y), twin.mean[c], 1e-6);
-          }
+EL_KERNEL_TEST(ResidualCells, LoadedCellsMatchTheReference) {
+  const Scene before(extent);
+  on_every_target([&] {
+    Scene scene(extent);
+    scene.load();
+    for (int y = 0; y < scene.cells.extent().height; ++y) {
+      for (int x = 0; x < scene.cells.extent().width; ++x) {
+        const reference::Cell twin = reference::cell(before.in(), x, y);
+        ASSERT_EQ(scene.cells.guides.surface.id(x, y), twin.id) << x << ", " << y;
+        ASSERT_EQ(scene.cells.count(x, y), twin.count);
+        const float depth = scene.guides.surface.depth(2 * x, 2 * y);
+        ASSERT_EQ(scene.cells.guides.surface.depth(x, y),
+                  twin.count > 0.0 ? depth : std::numeric_limits<float>::infinity());
+        ASSERT_NEAR(scene.cells.noise(x, y), twin.noise, 1e-5 * twin.noise);
+        for (std::size_t c = 0; c < 3; ++c) {
+          ASSERT_NEAR(scene.cells.mean[c](x, y), twin.mean[c], 1e-6);
         }
       }
     }
   });
 }
 
-TEST(ResidualCells, SpreadAsTheirTwinOnEveryTarget) {
-  for_each_target([] {
-    for (const Extent extent : kSweepExtents) {
-      Scene scene(extent);
-      scene.load();
-      const Plane<float> innovation = scene.innovation.clone();
-      scene.spread();
-      for (int y = 0; y < extent.height; ++y) {
-        for (int x = 0; x < extent.width; ++x) {
-          const auto twin = reference::spread(scene.cells, scene.in(), x, y);
-          for (std::size_t c = 0; c < 3; ++c) {
-            ASSERT_NEAR(scene.correction[c](x, y), twin[c], 2e-6) << x << ", " << y;
-          }
-          const double luminance = 0.2126 * twin[0] + 0.7152 * twin[1] + 0.0722 * twin[2];
-          if (std::isnan(innovation(x, y))) {
-            ASSERT_TRUE(std::isnan(scene.innovation(x, y)));
-          } else {
-            ASSERT_NEAR(scene.innovation(x, y), innovation(x, y) - luminance, 2e-6);
-          }
+EL_KERNEL_TEST(ResidualCells, SpreadCellsMatchTheReference) {
+  Scene before(extent);
+  before.load();
+  const auto mean = [&](std::size_t c, int x, int y) { return before.cells.mean[c](x, y); };
+  on_every_target([&] {
+    Scene scene(extent);
+    scene.load();
+    scene.spread();
+    for (int y = 0; y < extent.height; ++y) {
+      for (int x = 0; x < extent.width; ++x) {
+        const auto twin = reference::spread(before.cells.guides, mean, before.in(), x, y);
+        for (std::size_t c = 0; c < 3; ++c) {
+          ASSERT_NEAR(scene.correction[c](x, y), twin[c], 2e-6) << x << ", " << y;
+        }
+        const double luminance = 0.2126 * twin[0] + 0.7152 * twin[1] + 0.0722 * twin[2];
+        const float innovation = before.innovation(x, y);
+        if (std::isnan(innovation)) {
+          ASSERT_TRUE(std::isnan(scene.innovation(x, y)));
+        } else {
+          ASSERT_NEAR(scene.innovation(x, y), innovation - luminance, 2e-6);
         }
       }
     }
   });
 }
 
-TEST(ResidualCells, GiveAConstantResidualBackToEveryConfirmedPixel) {
+TEST(ResidualCells, ConfirmedPixelsReceiveAConstantResidual) {
   Scene scene({67, 41});
   scene.load();
   for (std::size_t c = 0; c < 3; ++c) scene.cells.mean[c].fill(0.75f);
@@ -128,7 +126,7 @@ TEST(ResidualCells, GiveAConstantResidualBackToEveryConfirmedPixel) {
       ++confirmed;
       const float given = scene.correction[2](x, y);
       if (given == 0.0f) {
-        ++left_out;  // no cell around has its object
+        ++left_out;  // no cell around it shows its object
       } else {
         ASSERT_NEAR(given, 0.75f, 1e-6f);
       }
@@ -138,14 +136,14 @@ TEST(ResidualCells, GiveAConstantResidualBackToEveryConfirmedPixel) {
   EXPECT_LT(left_out, confirmed / 20);
 }
 
-// Every second block column differs.
-TEST(ResidualCells, BlocksAreSignificantWhereTheirMeanIsBeyondItsNoise) {
+// Every second column of blocks is significant.
+TEST(ResidualCells, BlocksAreSignificantIfTheirMeanExceedsItsNoise) {
   const Extent extent{613, 19};
   Scene scene(extent);
   scene.samples.fill(1.0f);
   scene.age.fill(1e6f);
   scene.variance.fill(1.0f);
-  // Means of 64 pixels have a standard deviation of 1/8: 3/8 is where chance ends.
+  // Means of 64 pixels have a standard deviation of 1/8, and the limit is three of them: 3/8.
   for (int y = 0; y < extent.height; ++y) {
     for (int x = 0; x < extent.width; ++x) scene.innovation(x, y) = x % 16 < 8 ? 0.37f : 0.38f;
   }
@@ -161,14 +159,15 @@ TEST(ResidualCells, BlocksAreSignificantWhereTheirMeanIsBeyondItsNoise) {
       EXPECT_TRUE(blocks[i].is_asked);
       EXPECT_EQ(blocks[i].is_significant, i % 2 == 1) << i;
     }
-    // Of the last block five columns, in the last row 15 pixels, too few to ask.
+    // The last block has five columns. In the last row of blocks it has 15 pixels, which is too
+    // few.
     EXPECT_EQ(blocks[76].confirmed, 40);
     EXPECT_TRUE(blocks[76].is_asked);
     EXPECT_EQ(row(16)[75].confirmed, 24);
     EXPECT_EQ(row(16)[76].confirmed, 15);
     EXPECT_FALSE(row(16)[76].is_asked);
   });
-  // Too few pixels left to ask.
+  // Blocks with 8 confirmed pixels are not tested.
   for (int y = 0; y < extent.height; ++y) {
     for (int x = 0; x < extent.width; ++x) scene.innovation(x, y) = y % 8 == 0 ? 5.0f : kNan;
   }

@@ -5,14 +5,13 @@
 #include <array>
 #include <limits>
 
-#include "tests/support/extents.h"
-#include "tests/support/targets.h"
+#include "tests/support/kernel_test.h"
 
 namespace eigenlight {
 namespace {
 
-// Every kind of depth and normal beside each other.
-GBuffer nonsense(Extent extent) {
+// Valid and invalid depths and normals side by side.
+GBuffer mixed_surface(Extent extent) {
   constexpr float kInf = std::numeric_limits<float>::infinity();
   constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
   constexpr std::array kDepths{1.0f, 0.0f, -1.0f, 1e-20f, 1e20f, kInf, kNaN, 5.0f, 2.0f};
@@ -30,22 +29,20 @@ GBuffer nonsense(Extent extent) {
   return surface;
 }
 
-TEST(Guides, CountAsTheSlowTestDoes) {
-  for_each_target([] {
-    for (const Extent extent : kSweepExtents) {
-      const GBuffer surface = nonsense(extent);
-      for (int y = 0; y < extent.height; ++y) {
-        PixelCounts expected;
-        for (int x = 0; x < extent.width; ++x) {
-          const bool shown = surface.id(x, y) != 0;
-          expected.surface += shown ? 1 : 0;
-          expected.unguided += shown && !has_usable_guides(surface, x, y) ? 1 : 0;
-        }
-        const PixelCounts found = count_guides(surface, {0, y, extent.width, y + 1});
-        ASSERT_EQ(found.surface, expected.surface) << y;
-        ASSERT_EQ(found.unguided, expected.unguided) << y;
+EL_KERNEL_TEST(Guides, CountsMatchTheScalarTest) {
+  const GBuffer surface = mixed_surface(extent);
+  on_every_target([&] {
+    for_each_tile(TileGrid(extent, extent.width, 1), [&](const Rect& row) {
+      PixelCounts expected;
+      for (int x = 0; x < extent.width; ++x) {
+        const bool shown = surface.id(x, row.y0) != 0;
+        expected.surface += shown ? 1 : 0;
+        expected.unguided += shown && !has_usable_guides(surface, x, row.y0) ? 1 : 0;
       }
-    }
+      const PixelCounts found = count_guides(surface, row);
+      EXPECT_EQ(found.surface, expected.surface) << row.y0;
+      EXPECT_EQ(found.unguided, expected.unguided) << row.y0;
+    });
   });
 }
 

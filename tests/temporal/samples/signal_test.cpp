@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include "tests/support/extents.h"
+#include "tests/reference/signal.h"
+#include "tests/support/kernel_test.h"
 #include "tests/support/random_frames.h"
-#include "tests/support/targets.h"
 
 namespace eigenlight {
 namespace {
@@ -36,21 +36,21 @@ struct Scene {
       }
     }
   }
-  PixelCounts merge(bool resampled) {
-    PixelCounts counts;
-    for_each([&](const Rect& tile) {
-      const PixelCounts found =
-          merge_samples({frame, frame.lights[0].radiance, resampled ? &extra : nullptr,
-                         resampled ? &extra_mean : nullptr, age},
-                        tile, {light, samples});
-      counts += found;
-    });
-    return counts;
+  [[nodiscard]] TileGrid grid() const { return {frame.extent(), 32, 32}; }
+  [[nodiscard]] SignalInputs in(bool resampled) const {
+    return {frame, frame.lights[0].radiance, resampled ? &extra : nullptr,
+            resampled ? &extra_mean : nullptr, age};
   }
-  template <typename Body>
-  void for_each(Body body) const {
-    const TileGrid grid(frame.extent(), 32, 32);
-    for (int i = 0; i < grid.count(); ++i) body(grid.tile(i));
+  PixelCounts merge(bool resampled) {
+    PerTile<PixelCounts> counts(grid());
+    for_each_tile(grid(), [&](const Tile& tile) {
+      counts[tile] = merge_samples(in(resampled), tile, {light, samples});
+    });
+    PixelCounts sum;
+    for (const PixelCounts& found : counts) {
+      sum += found;
+    }
+    return sum;
   }
 
   Frame frame;
@@ -64,22 +64,15 @@ void expect_merged(const Scene& scene, bool resampled, const PixelCounts& counts
   std::int64_t fresh = 0, non_finite = 0;
   for (int y = 0; y < scene.light[0].height(); ++y) {
     for (int x = 0; x < scene.light[0].width(); ++x) {
-      const double extra = resampled ? scene.extra(x, y) : 0.0;
-      double mean[3], size = 0.0;
-      for (std::size_t c = 0; c < 3; ++c) {
-        mean[c] = 3.0 * scene.frame.lights[0].radiance[c](x, y);
-        if (extra > 0.0) mean[c] += extra * scene.extra_mean[c](x, y);
-        mean[c] /= 3.0 + extra;
-        size += std::abs(mean[c]);
-      }
+      const auto twin = reference::merged_samples(scene.in(resampled), x, y);
       const bool surface = scene.frame.surface.id(x, y) != 0;
-      const bool usable = surface && std::isfinite(size);
       fresh += surface && scene.age(x, y) == 0.0f ? 1 : 0;
-      non_finite += surface && !usable ? 1 : 0;
-      ASSERT_NEAR(scene.samples(x, y), usable ? 1.0 + extra / 3.0 : 0.0, 1e-5);
+      non_finite += surface && twin.samples == 0.0 ? 1 : 0;
+      ASSERT_NEAR(scene.samples(x, y), twin.samples, 1e-5);
       for (std::size_t c = 0; c < 3; ++c) {
-        if (usable) {
-          ASSERT_NEAR(scene.light[c](x, y), mean[c], 1e-6 * (1.0 + mean[c])) << x << ", " << y;
+        if (twin.samples > 0.0) {
+          ASSERT_NEAR(scene.light[c](x, y), twin.light[c], 1e-6 * (1.0 + twin.light[c]))
+              << x << ", " << y;
         } else {
           ASSERT_TRUE(std::isnan(scene.light[c](x, y)));
         }
@@ -90,19 +83,17 @@ void expect_merged(const Scene& scene, bool resampled, const PixelCounts& counts
   EXPECT_EQ(counts.non_finite, non_finite);
 }
 
-TEST(MergeSamples, IsTheMeanOfAllSamplesOnEveryTarget) {
-  for_each_target([] {
-    for (const Extent extent : kSweepExtents) {
-      for (const bool resampled : {false, true}) {
-        Scene scene(extent);
-        const PixelCounts counts = scene.merge(resampled);
-        expect_merged(scene, resampled, counts);
-      }
+EL_KERNEL_TEST(MergeSamples, MatchesTheReference) {
+  on_every_target([&] {
+    for (const bool resampled : {false, true}) {
+      Scene scene(extent);
+      const PixelCounts counts = scene.merge(resampled);
+      expect_merged(scene, resampled, counts);
     }
   });
 }
 
-TEST(MergeSamples, RefusesLightBeyondWhatSquaresHold) {
+TEST(MergeSamples, LightWhoseSquareOverflowsIsNotUsable) {
   Scene scene({16, 16});
   for (auto& plane : scene.frame.lights[0].radiance) plane.fill(1.0f);
   scene.frame.surface.id.fill(1);
@@ -111,57 +102,41 @@ TEST(MergeSamples, RefusesLightBeyondWhatSquaresHold) {
   EXPECT_EQ(scene.samples(3, 4), 0.0f);
 }
 
-// One pixel's window, summed directly.
-double variance_around(const Scene& scene, int px, int py) {
-  double count = 0.0, sum = 0.0, square = 0.0;
-  for (int y = std::max(py - 3, 0); y <= std::min(py + 3, scene.samples.height() - 1); ++y) {
-    for (int x = std::max(px - 3, 0); x <= std::min(px + 3, scene.samples.width() - 1); ++x) {
-      if (!(scene.samples(x, y) > 0.0f)) continue;
-      const auto& u = scene.frame.lights[0].radiance;
-      const double most = scene.brightness(x / 8, y / 8);
-      const double l =
-          std::clamp(0.2126 * u[0](x, y) + 0.7152 * u[1](x, y) + 0.0722 * u[2](x, y), -most, most);
-      count += 1.0;
-      sum += l;
-      square += l * l;
-    }
-  }
-  return count > 1.0 ? std::max(square / count - sum * sum / (count * count), 0.0) : 0.0;
-}
-
-TEST(FreshVariance, IsThatOfTheSurroundingsAtNewPixelsAloneOnEveryTarget) {
-  for_each_target([] {
-    for (const Extent extent : kSweepExtents) {
-      Scene scene(extent);
-      (void)scene.merge(true);
-      const Plane<float> before = scene.variance.clone();
-      scene.for_each([&](const Rect& tile) {
-        fresh_variance({scene.frame, scene.frame.lights[0].radiance, scene.samples, scene.age,
-                        scene.brightness},
-                       tile, scene.variance);
-      });
-      for (int y = 0; y < extent.height; ++y) {
-        for (int x = 0; x < extent.width; ++x) {
-          const bool fresh = scene.frame.surface.id(x, y) != 0 && scene.age(x, y) == 0.0f;
-          const double wanted = fresh ? variance_around(scene, x, y) : before(x, y);
-          ASSERT_NEAR(scene.variance(x, y), wanted, 1e-6) << x << ", " << y;
-        }
+EL_KERNEL_TEST(FreshVariance, MatchesTheReferenceAtNewPixelsOnly) {
+  Scene before(extent);
+  (void)before.merge(true);
+  on_every_target([&] {
+    Scene scene(extent);
+    (void)scene.merge(true);
+    for_each_tile(scene.grid(), [&](const Rect& tile) {
+      fresh_variance(
+          {scene.frame, scene.frame.lights[0].radiance, scene.samples, scene.age, scene.brightness},
+          tile, scene.variance);
+    });
+    for (int y = 0; y < extent.height; ++y) {
+      for (int x = 0; x < extent.width; ++x) {
+        const bool fresh = scene.frame.surface.id(x, y) != 0 && scene.age(x, y) == 0.0f;
+        const double wanted =
+            fresh ? reference::fresh_variance(before.frame.lights[0].radiance, before.samples,
+                                              before.brightness, {x, y})
+                  : before.variance(x, y);
+        ASSERT_NEAR(scene.variance(x, y), wanted, 1e-6) << x << ", " << y;
       }
     }
   });
 }
 
-TEST(EstimateVariance, FallsWithAgeAndMarksTheYoung) {
-  Scene scene({67, 33});
-  Plane<float> estimate({67, 33});
-  Plane<std::uint8_t> young({67, 33});
-  for_each_target([&] {
-    scene.for_each([&](const Rect& tile) {
+EL_KERNEL_TEST(EstimateVariance, FallsWithAgeAndMarksYoungPixels) {
+  const Scene scene(extent);
+  on_every_target([&] {
+    Plane<float> estimate(extent);
+    Plane<std::uint8_t> young(extent);
+    for_each_tile(scene.grid(), [&](const Rect& tile) {
       estimate_variance({scene.frame.surface.id, scene.age, scene.variance, 2.0f}, tile,
                         {estimate, young});
     });
-    for (int y = 0; y < 33; ++y) {
-      for (int x = 0; x < 67; ++x) {
+    for (int y = 0; y < extent.height; ++y) {
+      for (int x = 0; x < extent.width; ++x) {
         const float age = scene.age(x, y);
         ASSERT_FLOAT_EQ(estimate(x, y), age > 0.0f ? scene.variance(x, y) / age : 0.0f);
         ASSERT_EQ(young(x, y) != 0, scene.frame.surface.id(x, y) != 0 && age < 2.0f);
