@@ -13,37 +13,12 @@ namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-// A frame of light 1 on every surface, each value with uniform noise of variance 1/12.
-void fill_with_noise(Frame& frame) {
-  for (std::size_t c = 0; c < 3; ++c) {
-    for (int y = 0; y < frame.extent().height; ++y) {
-      for (int x = 0; x < frame.extent().width; ++x) {
-        if (frame.surface.id(x, y) == 0) continue;
-        const std::uint32_t seed = hash_key(static_cast<std::uint32_t>(frame.index), c);
-        frame.lights[0].radiance[c](x, y) = PixelRandom(seed, x, y).between(0.5f, 1.5f);
-      }
-    }
-  }
-}
-
-double error_of_one(const Planes<3>& out, const Frame& frame) {
-  double sum = 0.0, count = 0.0;
-  for (int y = 0; y < frame.extent().height; ++y) {
-    for (int x = 0; x < frame.extent().width; ++x) {
-      if (frame.surface.id(x, y) == 0) continue;
-      sum += std::pow(static_cast<double>(out[1](x, y)) - 1.0, 2);
-      count += 1.0;
-    }
-  }
-  return sum / count;
-}
-
 glm::vec3 position(const Frame& frame, int x, int y) {
   return frame.camera.to_world(frame.camera.pixel_to_view(glm::vec2(x, y) + 0.5f) *
                                frame.surface.depth(x, y));
 }
 
-// A frame of tilted planes and light that is a sum of its features.
+// A frame of tilted planes whose light is a sum of its features.
 struct Scene {
   explicit Scene(Extent extent)
       : frame(make_random_frame({.extent = extent, .disturbed = false, .non_finite = false}, 3)),
@@ -67,21 +42,22 @@ struct Scene {
   Plane<float> usable;
 };
 
-TEST(BmfrFit, FindsLightThatIsASumOfFeatures) {
+TEST(BmfrFit, RecoversASumOfFeatures) {
   for (const Extent extent : {Extent{64, 64}, Extent{65, 17}, Extent{100, 70}}) {
     const Scene scene(extent);
     for (const int jitter : {0, 5, 13}) {
       Planes<3> out = make_planes<3>(extent);
-      // Noise on the features, here next to none, is what keeps the fit from being exact.
+      // Noise on the features, here very little, keeps the fit from being exact.
       bmfr_fit({scene.frame, scene.light, scene.usable, jitter, 1e-4f}, out);
       EXPECT_TRUE(planes_near(out, scene.light, {0.01, 0.0})) << jitter;
     }
   }
 }
 
-TEST(BmfrFit, IsTheLeastSquaresSolution) {
-  // One block, shifted to the image's corner by offset 3 (8, 0) and mirrored at its edges: with no
-  // singular direction left by the noise, normal equations in double give the same light.
+TEST(BmfrFit, MatchesTheLeastSquaresSolution) {
+  // Offset 3 (8, 0) shifts one block to the corner of the image, and its edges are mirrored. Noise
+  // on the features leaves no singular direction, so normal equations in double give the same
+  // light.
   const Extent extent{8, 16};
   Scene scene(extent);
   for (auto& plane : scene.frame.surface.normal) plane.fill(0.0f);
@@ -109,8 +85,8 @@ TEST(BmfrFit, IsTheLeastSquaresSolution) {
       b.row(row) << scene.light[0](x, y), scene.light[1](x, y), scene.light[2](x, y);
     }
   }
-  // Rows of the block: columns -8 .. 23 of the image are its 8 columns four times over, rows
-  // -16 .. 15 its 16 rows twice, so that every pixel weighs the same.
+  // The block repeats the 8 columns of the image four times and its 16 rows twice, so all pixels
+  // have the same weight.
   const Eigen::MatrixXd fit = a * (a.transpose() * a).ldlt().solve(a.transpose() * b);
   for (int y = 0; y < 16; ++y) {
     for (int x = 0; x < 8; ++x) {
@@ -122,7 +98,7 @@ TEST(BmfrFit, IsTheLeastSquaresSolution) {
   }
 }
 
-TEST(BmfrFit, LeavesOutPixelsThatAreNotUsable) {
+TEST(BmfrFit, LeavesOutUnusablePixels) {
   Scene scene({64, 64});
   for (int y = 0; y < 64; ++y) {
     for (int x = y % 3; x < 64; x += 3) {
@@ -135,7 +111,7 @@ TEST(BmfrFit, LeavesOutPixelsThatAreNotUsable) {
   EXPECT_TRUE(planes_near(out, Scene({64, 64}).light, {0.01, 0.0}));
 }
 
-TEST(BmfrFit, TakesTheMeanOfFewPixelsAndNothingOfNone) {
+TEST(BmfrFit, FewPixelsGiveTheirMean) {
   Scene scene({64, 64});
   scene.usable.fill(0.0f);
   Planes<3> out = make_planes<3>({64, 64});
@@ -157,80 +133,29 @@ TEST(BmfrFit, TakesTheMeanOfFewPixelsAndNothingOfNone) {
   EXPECT_EQ(out[0](60, 60), 0.0f);
 }
 
-TEST(BmfrOptions, RefusesWhatIsOutOfRange) {
+TEST(BmfrOptions, RejectsValuesOutOfRange) {
   const FloatTrapsOff nan_is_meant;
   EXPECT_THROW(Bmfr({{8, 8}, 1}, {.alpha = 0.0f}), std::invalid_argument);
   EXPECT_THROW(Bmfr({{8, 8}, 1}, {.second_alpha = 2.0f}), std::invalid_argument);
   EXPECT_THROW(Bmfr({{8, 8}, 1}, {.noise = kNan}), std::invalid_argument);
 }
 
-TEST(Bmfr, MakesNoisyLightSmooth) {
-  AnalyticOptions options{.extent = {96, 54}, .frames = 12};
-  options.slide = {1.4f, -1.3f};
-  options.sky_columns = 6;
-  options.edit = fill_with_noise;
-  AnalyticSource source(options);
-  Bmfr bmfr({options.extent, 1});
-  double first = 0.0, last = 0.0;
-  for (int frame = 0; frame < 12; ++frame) {
-    const Planes<3>* out = bmfr.step(source);
-    last = error_of_one(*out, bmfr.frame());
-    if (frame == 0) first = last;
-    EXPECT_EQ((*out)[0](2, 30), 0.0f);
-  }
-  EXPECT_LT(first, 0.05 / 12.0);
-  EXPECT_LT(last, 0.01 / 12.0);
-  EXPECT_EQ(bmfr.age()(2, 30), 0.0f);
-  EXPECT_NEAR(bmfr.age()(50, 50), 12.0f, 0.01f);
-  EXPECT_EQ(bmfr.report().surface_pixels, 90 * 54);
-  EXPECT_EQ(bmfr.report().new_pixels, 54 + 90 - 1);
+TEST(Bmfr, SmoothsNoise) { expect_smooths_noise("bmfr", {{1.4f, -1.3f}, 0.05, 0.01, 54 + 90 - 1}); }
+
+TEST(Bmfr, KeepsConstantLight) { expect_keeps_constant_light("bmfr", 1e-4f); }
+
+TEST(Bmfr, LeavesOutNonFiniteLight) {
+  expect_leaves_out_non_finite_light(
+      [](Extent extent) {
+        return make_denoiser("bmfr", {extent, 1});
+      },
+      {.relative = 0.02, .absolute = 0.0});
 }
 
-TEST(Bmfr, KeepsConstantLightAsItIs) {
-  AnalyticOptions options{.frames = 10, .noise = 0.0f};
-  options.edit = [](Frame& frame) {
-    for (auto& plane : frame.lights[0].radiance) plane.fill(0.75f);
-  };
-  options.slide = {0.5f, 0.25f};
-  const Planes<3> out = last_picture("bmfr", options);
-  for (int y = 0; y < 36; ++y) {
-    for (int x = 0; x < 64; ++x) ASSERT_NEAR(out[1](x, y), 0.75f, 1e-4f);
-  }
-}
-
-TEST(Bmfr, LeavesOutWhatIsNotFinite) {
-  AnalyticOptions clean{.frames = 6, .noise = 0.0f};
-  clean.slide = {0.5f, 0.5f};
-  AnalyticOptions broken = clean;
-  broken.edit = [](Frame& frame) {
-    if (frame.index == 0) frame.lights[0].radiance[1](30, 20) = kNan;
-    if (frame.index == 3)
-      frame.lights[0].radiance[2](40, 10) = std::numeric_limits<float>::infinity();
-  };
-  AnalyticSource source(broken), untouched(clean);
-  Bmfr bmfr({broken.extent, 1}), other({clean.extent, 1});
-  for (int frame = 0; frame < 6; ++frame) {
-    const Planes<3>* out = bmfr.step(source);
-    const Planes<3>* expected = other.step(untouched);
-    EXPECT_EQ(bmfr.report().non_finite_pixels, frame == 0 || frame == 3 ? 1 : 0);
-    EXPECT_TRUE(all_finite(*out));
-    if (frame == 0) {
-      EXPECT_EQ(bmfr.age()(30, 20), 0.0f);
-      EXPECT_GT((*out)[1](30, 20), 0.0f);
-    }
-    const double usual = relative_error(*expected, untouched, other.frame());
-    EXPECT_LT(relative_error(*out, source, bmfr.frame()), usual * 1.02) << frame;
-  }
-}
-
-TEST(Bmfr, GoesOnAfterARestart) { expect_resumes("bmfr"); }
-TEST(Bmfr, ForgetsAtCuts) { expect_forgets_at_cuts("bmfr"); }
-TEST(Bmfr, GivesTheSameWhetherOrNotItSkipsStillFrames) {
-  expect_still_frames_change_nothing("bmfr");
-}
-TEST(Bmfr, GivesTheSameBitsOnAnyNumberOfThreads) {
-  expect_same_bits_on_any_number_of_threads("bmfr");
-}
+TEST(Bmfr, ResumesWithTheSameBits) { expect_resumes("bmfr"); }
+TEST(Bmfr, ForgetsHistoryAtCuts) { expect_forgets_at_cuts("bmfr"); }
+TEST(Bmfr, SkippingStillFramesChangesNothing) { expect_still_frames_change_nothing("bmfr"); }
+TEST(Bmfr, ThreadCountDoesNotChangeTheBits) { expect_same_bits_on_any_number_of_threads("bmfr"); }
 TEST(Bmfr, RunsAtAnySize) { expect_runs_at_any_size("bmfr"); }
 
 }  // namespace

@@ -11,7 +11,7 @@ constexpr Extent kSmall{32, 20};
 constexpr Eigen::Index kSize = 3 * 32 * 20;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-// Frame t of a lamp that pulses over one pattern and a second one that swings over another.
+// Frame t of two lamps, one that pulses and one that swings, each with a pattern of its own.
 Planes<3> lamps(int t, float noise) {
   Planes<3> light = make_planes<3>(kSmall);
   const float pulse = 1.0f + 0.3f * std::sin(0.9f * static_cast<float>(t));
@@ -59,7 +59,7 @@ double cosine(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   return std::abs(a.dot(b)) / (a.norm() * b.norm());
 }
 
-TEST(ImagePca, AgreesWithItsTwinPixelByPixelWeightsIncluded) {
+TEST(ImagePca, MatchesTheReference) {
   ImagePca pca(kSmall, 3);
   BasisField bases(kSmall, 3);
   reference::Ccipca twin(kSize, 3);
@@ -85,7 +85,7 @@ TEST(ImagePca, AgreesWithItsTwinPixelByPixelWeightsIncluded) {
   }
 }
 
-TEST(ImagePca, FindsTheLeadingEigenvectorsOfAllFrames) {
+TEST(ImagePca, FindsTheLeadingEigenvectors) {
   constexpr int kFrames = 200;
   ImagePca pca(kSmall, 3);
   BasisField bases(kSmall, 3);
@@ -103,15 +103,15 @@ TEST(ImagePca, FindsTheLeadingEigenvectorsOfAllFrames) {
     const Eigen::VectorXd vector = all * batch.eigenvectors().col(kFrames - 1 - k);
     const Eigen::VectorXd basis = flatten_basis(bases, k);
     EXPECT_GT(cosine(basis, vector), 0.99) << k;
-    // Amnesia makes the estimate follow the last dozens of frames.
+    // Amnesia limits the estimate to some dozens of frames.
     EXPECT_NEAR(basis.norm() / batch.eigenvalues()[kFrames - 1 - k], 1.0, 0.2) << k;
   }
 }
 
-TEST(ImagePca, OrthogonalBasesSpanWhatTheOldOnesDid) {
+TEST(ImagePca, OrthogonalizationKeepsTheSpan) {
   BasisField bases(kSmall, 5);
   for (int k = 0; k < 5; ++k) {
-    // The fourth is twice the second, the fifth zero.
+    // The fourth basis is twice the second one, and the fifth is zero.
     const Planes<3> light = lamps(k == 3 ? 1 : k, 1.0f);
     for (int y = 0; y < kSmall.height; ++y) {
       for (int x = 0; x < kSmall.width; ++x) {
@@ -134,7 +134,7 @@ TEST(ImagePca, OrthogonalBasesSpanWhatTheOldOnesDid) {
   EXPECT_LT((old - made * (made.transpose() * old)).norm() / old.norm(), 1e-5);
 }
 
-TEST(ImagePca, LearnsLightThatComesAfterDarkness) {
+TEST(ImagePca, LearnsLightAfterDarkness) {
   ImagePca pca(kSmall, 2);
   BasisField bases(kSmall, 2);
   Plane<float> weight(kSmall);
@@ -149,7 +149,7 @@ TEST(ImagePca, LearnsLightThatComesAfterDarkness) {
   }
 }
 
-TEST(NewPixelFilter, SmoothsMarkedPixelsAlongTheirOwnSurface) {
+TEST(NewPixelFilter, SmoothsMarkedPixelsOnTheirSurface) {
   Frame frame;
   frame.resize(kSmall);
   frame.camera.focal = 32.0f;
@@ -165,7 +165,8 @@ TEST(NewPixelFilter, SmoothsMarkedPixelsAlongTheirOwnSurface) {
       bases.value(x, y, 0, 1) = near ? 1.0f : 5.0f;
     }
   }
-  // Marked: one that has no value yet, one with a wild one, and one left alone.
+  // Two marked pixels, one without a value and one with an outlier, and an outlier that is not
+  // marked.
   bases.age(15, 8) = 0.0f;
   bases.value(15, 8, 0, 1) = kNan;
   bases.value(16, 12, 0, 1) = 100.0f;
@@ -179,7 +180,7 @@ TEST(NewPixelFilter, SmoothsMarkedPixelsAlongTheirOwnSurface) {
   EXPECT_EQ(bases.value(5, 5, 0, 1), 100.0f);
 }
 
-TEST(Chen2012, ErrorFallsUnderFixedLight) {
+TEST(Chen2012, ErrorFallsUnderSteadyLight) {
   AnalyticSource source({.frames = 60});
   Chen2012 chen({{64, 36}, 3});
   double first = 0.0, last = 0.0;
@@ -188,15 +189,16 @@ TEST(Chen2012, ErrorFallsUnderFixedLight) {
     const double error = relative_error(*out, source, chen.frame());
     if (frame == 0) first = error;
     last = error;
-    // With w = 1 a basis is its frame, which leaves nothing over for others: up to (1 + l) frames.
+    // With w = 1 a basis equals its frame and leaves nothing for other bases, for up to 1 + l
+    // frames.
     EXPECT_EQ(chen.report().mean_rank, frame < 3 ? 1 : std::min(frame - 1, 3)) << frame;
     EXPECT_EQ(chen.age()(9, 9), static_cast<float>(frame + 1));
   }
-  EXPECT_NEAR(first, 0.25 / 3.0, 0.006);  // the first basis is the first frame
+  EXPECT_NEAR(first, 0.25 / 3.0, 0.006);  // the first basis equals the first frame
   EXPECT_LT(last, 0.5 * first);
 }
 
-TEST(Chen2012, KeepsLightWithoutNoiseAsItIs) {
+TEST(Chen2012, KeepsLightWithoutNoise) {
   AnalyticOptions options{.frames = 12, .noise = 0.0f};
   options.gain = [](int frame) { return frame % 3 == 0 ? 1.0f : 2.0f; };
   AnalyticSource source(options);
@@ -207,7 +209,7 @@ TEST(Chen2012, KeepsLightWithoutNoiseAsItIs) {
   }
 }
 
-TEST(Chen2012, TakesMoreSamplesAtNewPixelsOnly) {
+TEST(Chen2012, OnlyNewPixelsGetExtraSamples) {
   AnalyticOptions options{.frames = 8};
   options.slide = {2.0f, 0.0f};
   AnalyticSource source(options);
@@ -219,7 +221,7 @@ TEST(Chen2012, TakesMoreSamplesAtNewPixelsOnly) {
     EXPECT_EQ(chen.report().extra_samples, frame == 0 ? 0 : 120 * 2 * 36);
     EXPECT_EQ(chen.report().rays, 3 * 64 * 36 + chen.report().extra_samples);
   }
-  // 123 samples, smoothed: a new pixel is better than an old one.
+  // With 123 samples and smoothing, a new pixel is better than an old one.
   double fresh = 0.0, old = 0.0;
   for (int y = 0; y < 36; ++y) {
     for (int x = 0; x < 64; ++x) {
@@ -231,36 +233,23 @@ TEST(Chen2012, TakesMoreSamplesAtNewPixelsOnly) {
   EXPECT_LT(fresh, 0.5 * old);
 }
 
-TEST(Chen2012, LeavesOutWhatIsNotFinite) {
-  AnalyticOptions clean{.frames = 6, .noise = 0.0f};
-  clean.slide = {0.5f, 0.5f};
-  AnalyticOptions broken = clean;
-  broken.edit = [](Frame& frame) {
-    if (frame.index == 0) frame.lights[0].radiance[1](30, 20) = kNan;
-    if (frame.index == 3)
-      frame.lights[0].radiance[2](40, 10) = std::numeric_limits<float>::infinity();
-  };
-  AnalyticSource source(broken), untouched(clean);
-  Chen2012 chen({broken.extent, 3}), other({broken.extent, 3});
-  for (int frame = 0; frame < 6; ++frame) {
-    const Planes<3>* out = chen.step(source);
-    EXPECT_EQ(chen.report().non_finite_pixels, frame == 0 || frame == 3 ? 1 : 0);
-    EXPECT_TRUE(all_finite(*out));
-    const double error = relative_error(*out, source, chen.frame());
-    const Planes<3>* expected = other.step(untouched);
-    const double usual = relative_error(*expected, untouched, other.frame());
-    EXPECT_LT(error, usual + 1e-5) << frame;
-  }
+TEST(Chen2012, LeavesOutNonFiniteLight) {
+  expect_leaves_out_non_finite_light(
+      [](Extent extent) {
+        return make_denoiser("chen2012", {extent, 3});
+      },
+      {});
 }
 
-TEST(Chen2012, GoesOnAfterARestart) { expect_resumes("chen2012"); }
-TEST(Chen2012, ForgetsAtCuts) { expect_forgets_at_cuts("chen2012"); }
-TEST(Chen2012, GivesTheSameWhetherOrNotItSkipsStillFrames) {
+TEST(Chen2012, ResumesWithTheSameBits) { expect_resumes("chen2012"); }
+TEST(Chen2012, ForgetsHistoryAtCuts) { expect_forgets_at_cuts("chen2012"); }
+TEST(Chen2012, SkippingStillFramesChangesNothing) {
   expect_still_frames_change_nothing("chen2012");
 }
-TEST(Chen2012, GivesTheSameBitsOnAnyNumberOfThreads) {
+TEST(Chen2012, ThreadCountDoesNotChangeTheBits) {
   expect_same_bits_on_any_number_of_threads("chen2012");
 }
+TEST(Chen2012, KeepsConstantLight) { expect_keeps_constant_light("chen2012", 1e-5f); }
 TEST(Chen2012, RunsAtAnySize) { expect_runs_at_any_size("chen2012"); }
 
 }  // namespace

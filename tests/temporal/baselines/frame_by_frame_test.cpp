@@ -11,7 +11,7 @@
 namespace eigenlight {
 namespace {
 
-TEST(FrameByFrame, HandsTheRawFrameThrough) {
+TEST(FrameByFrame, ReturnsTheRawFrame) {
   AnalyticOptions options;
   options.sky_columns = 10;
   AnalyticSource source(options);
@@ -33,7 +33,7 @@ TEST(FrameByFrame, HandsTheRawFrameThrough) {
   EXPECT_EQ(noisy.step(source), nullptr);
 }
 
-TEST(FrameByFrame, ExcludesAndCountsPixelsThatAreNotFinite) {
+TEST(FrameByFrame, NonFinitePixelsAreZeroAndCounted) {
   AnalyticOptions options;
   options.edit = [](Frame& frame) {
     frame.lights[0].radiance[0](3, 4) = std::numeric_limits<float>::quiet_NaN();
@@ -53,7 +53,7 @@ TEST(FrameByFrame, ExcludesAndCountsPixelsThatAreNotFinite) {
   }
 }
 
-TEST(FrameByFrame, RefusesFramesOfAnotherSizeAndStatesOfAnotherMethod) {
+TEST(FrameByFrame, RejectsOtherSizesAndStates) {
   AnalyticSource source({});
   FrameByFrame noisy({{63, 36}, 3}, "noisy");
   EXPECT_THROW((void)noisy.step(source), std::invalid_argument);
@@ -63,7 +63,7 @@ TEST(FrameByFrame, RefusesFramesOfAnotherSizeAndStatesOfAnotherMethod) {
   EXPECT_THROW(noisy.load(reader), std::runtime_error);
 }
 
-TEST(Methods, AreFoundByNameAndListedOnceEach) {
+TEST(Methods, AreFoundByName) {
   for (const Method& method : methods()) {
     EXPECT_NE(make_denoiser(method.name, {{8, 8}, 2}), nullptr);
     EXPECT_FALSE(method.what.empty());
@@ -73,7 +73,7 @@ TEST(Methods, AreFoundByNameAndListedOnceEach) {
   EXPECT_THROW((void)make_denoiser("noisy", {{8, 0}, 3}), std::invalid_argument);
 }
 
-TEST(Methods, RunWithoutEachOfTheirPartsAndRefuseOthers) {
+TEST(Methods, RunWithoutEachOfTheirParts) {
   for (const Method& method : methods()) {
     for (const Part& part : method.parts) {
       AnalyticSource source({});

@@ -9,7 +9,7 @@ namespace {
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr HemsOptions kTimeOnly{.radius = 0, .color = 100.0f};
 
-TEST(Hems2010, SumsSeventeenFramesOfSteadyLight) {
+TEST(Hems2010, AveragesSeventeenFrames) {
   AnalyticOptions options{.frames = 24};
   AnalyticSource source(options);
   Hems2010 hems({options.extent, 1}, kTimeOnly);
@@ -23,9 +23,9 @@ TEST(Hems2010, SumsSeventeenFramesOfSteadyLight) {
   }
 }
 
-TEST(Hems2010, FollowsPointsThroughAllPastFrames) {
-  // A slide of half a pixel: each odd frame is read between two pixels, and none is read twice
-  // over, so 16 frames back the light is where it belongs.
+TEST(Hems2010, FollowsPointsThroughPastFrames) {
+  // With a slide of half a pixel every other frame is read between two pixels. Each is resampled
+  // once only, so light from 16 frames ago is at the right position.
   AnalyticOptions options{.frames = 20, .noise = 0.0f};
   options.slide = {1.5f, -0.5f};
   options.sky_columns = 6;
@@ -37,7 +37,7 @@ TEST(Hems2010, FollowsPointsThroughAllPastFrames) {
   // The slide uncovers the last one or two columns and a row every other frame.
   EXPECT_EQ(hems.age()(63, 10), 1.0f);
   EXPECT_NEAR(hems.age()(36, 30), 17.0f, 0.05f);
-  // 11 columns from the right edge: seen for 7 frames before this one.
+  // A pixel 11 columns from the right edge has been visible in 7 frames before this one.
   EXPECT_NEAR(hems.age()(63 - 11, 30), 8.0f, 0.05f);
   EXPECT_EQ(hems.age()(2, 5), 0.0f);
   EXPECT_EQ((*out)[0](2, 5), 0.0f);
@@ -83,36 +83,15 @@ TEST(Hems2010, SmoothsAlongSurfacesOnly) {
   EXPECT_EQ((*out)[0](14, 10), 1.0f);
 }
 
-TEST(Hems2010, LeavesOutWhatIsNotFinite) {
-  AnalyticOptions clean{.frames = 6, .noise = 0.0f};
-  clean.slide = {0.5f, 0.5f};
-  AnalyticOptions broken = clean;
-  broken.edit = [](Frame& frame) {
-    if (frame.index == 0) frame.lights[0].radiance[1](30, 20) = kNan;
-    if (frame.index == 3)
-      frame.lights[0].radiance[2](40, 10) = std::numeric_limits<float>::infinity();
-  };
-  for (const int radius : {0, 2}) {
-    AnalyticSource source(broken), untouched(clean);
-    Hems2010 hems({broken.extent, 1}, {.radius = radius}),
-        other({clean.extent, 1}, {.radius = radius});
-    for (int frame = 0; frame < 6; ++frame) {
-      const Planes<3>* out = hems.step(source);
-      const Planes<3>* expected = other.step(untouched);
-      EXPECT_EQ(hems.report().non_finite_pixels, frame == 0 || frame == 3 ? 1 : 0);
-      EXPECT_TRUE(all_finite(*out));
-      if (frame == 0 && radius == 0) {
-        EXPECT_EQ((*out)[0](30, 20), 0.0f);
-        EXPECT_EQ(hems.age()(30, 20), 0.0f);
-        continue;
-      }
-      const double usual = relative_error(*expected, untouched, other.frame());
-      EXPECT_LT(relative_error(*out, source, hems.frame()), usual + 1e-5) << frame;
-    }
-  }
+TEST(Hems2010, LeavesOutNonFiniteLight) {
+  expect_leaves_out_non_finite_light(
+      [](Extent extent) {
+        return std::make_unique<Hems2010>(DenoiserOptions{extent, 1}, kTimeOnly);
+      },
+      {.fills = false});
 }
 
-TEST(HemsOptions, RefusesWhatIsOutOfRange) {
+TEST(HemsOptions, RejectsValuesOutOfRange) {
   const FloatTrapsOff nan_is_meant;
   EXPECT_THROW(Hems2010({{8, 8}, 1}, {.frames = 17}), std::invalid_argument);
   EXPECT_THROW(Hems2010({{8, 8}, 1}, {.radius = -1}), std::invalid_argument);
@@ -120,22 +99,14 @@ TEST(HemsOptions, RefusesWhatIsOutOfRange) {
   EXPECT_THROW(Hems2010({{8, 8}, 1}, {.decay = kNan}), std::invalid_argument);
 }
 
-TEST(Hems2010, KeepsConstantLightAsItIs) {
-  AnalyticOptions options{.frames = 10, .noise = 0.0f};
-  options.edit = [](Frame& frame) {
-    for (auto& plane : frame.lights[0].radiance) plane.fill(0.75f);
-  };
-  options.slide = {0.5f, 0.25f};
-  const Planes<3> out = last_picture("hems2010", options);
-  for (int y = 0; y < 36; ++y) {
-    for (int x = 0; x < 64; ++x) ASSERT_NEAR(out[1](x, y), 0.75f, 1e-5f);
-  }
-}
+TEST(Hems2010, KeepsConstantLight) { expect_keeps_constant_light("hems2010", 1e-5f); }
 
-TEST(Hems2010, GoesOnAfterARestart) { expect_resumes("hems2010"); }
-TEST(Hems2010, ForgetsAtCuts) { expect_forgets_at_cuts("hems2010"); }
-TEST(Hems2010, DoesNotAskWhetherFramesAreStill) { expect_still_frames_change_nothing("hems2010"); }
-TEST(Hems2010, GivesTheSameBitsOnAnyNumberOfThreads) {
+TEST(Hems2010, ResumesWithTheSameBits) { expect_resumes("hems2010"); }
+TEST(Hems2010, ForgetsHistoryAtCuts) { expect_forgets_at_cuts("hems2010"); }
+TEST(Hems2010, SkippingStillFramesChangesNothing) {
+  expect_still_frames_change_nothing("hems2010");
+}
+TEST(Hems2010, ThreadCountDoesNotChangeTheBits) {
   expect_same_bits_on_any_number_of_threads("hems2010");
 }
 TEST(Hems2010, RunsAtAnySize) { expect_runs_at_any_size("hems2010"); }

@@ -20,7 +20,7 @@ std::vector<Frame> all_frames(const AnalyticOptions& options) {
   return frames;
 }
 
-TEST(TrackPca, IsThatOfTheWholeMatrixWhereNothingIsMissing) {
+TEST(TrackPca, MatchesTheSvdWithoutMissingPoints) {
   AnalyticOptions options{.extent = {24, 16}, .frames = 10, .noise = 0.3f};
   options.gain = [](int frame) { return 1.0f + 0.5f * std::sin(0.8f * static_cast<float>(frame)); };
   const std::vector<Frame> frames = all_frames(options);
@@ -51,7 +51,7 @@ TEST(TrackPca, IsThatOfTheWholeMatrixWhereNothingIsMissing) {
   }
 }
 
-TEST(TrackPca, IsNotLedByOutliersWherePointsAreEqual) {
+TEST(TrackPca, EqualPointsLimitOutliers) {
   // Light that doubles in every second frame, and one pixel that is once 1000 times as bright.
   AnalyticOptions options{.extent = {24, 16}, .frames = 8, .noise = 0.0f};
   options.gain = [](int frame) { return frame % 2 == 0 ? 1.0f : 2.0f; };
@@ -67,7 +67,7 @@ TEST(TrackPca, IsNotLedByOutliersWherePointsAreEqual) {
   EXPECT_GT(std::abs(led.weights()(3, 0)), 0.95);
 }
 
-TEST(TrackPca, FindsAProductOfLightAndTimeFromWhatIsSeen) {
+TEST(TrackPca, RecoversAGainFromPartiallyVisiblePoints) {
   // Under a moving camera no point is in all frames; light is a pattern times a gain: rank 1.
   AnalyticOptions options{.extent = {48, 27}, .frames = 14, .noise = 0.0f};
   options.slide = {3.0f, 0.0f};
@@ -86,7 +86,7 @@ TEST(TrackPca, FindsAProductOfLightAndTimeFromWhatIsSeen) {
   }
 }
 
-TEST(TrackPca, GivesPointsOfFewFramesFewBases) {
+TEST(TrackPca, PointsOfFewFramesHaveFewBases) {
   AnalyticOptions options{.extent = {32, 18}, .frames = 12};
   options.slide = {2.0f, 0.0f};
   const std::vector<Frame> frames = all_frames(options);
@@ -105,7 +105,7 @@ TEST(TrackPca, GivesPointsOfFewFramesFewBases) {
   EXPECT_THROW(TrackPca(tracks, {.sweeps = -1}), std::invalid_argument);
 }
 
-TEST(Meyer2006, AveragesSteadyLightOverTheWholeSequence) {
+TEST(Meyer2006, AveragesSteadyLightOverTheSequence) {
   AnalyticOptions options{.frames = 30};
   AnalyticSource source(options);
   Meyer2006 meyer({options.extent, 1});
@@ -125,7 +125,7 @@ TEST(Meyer2006, AveragesSteadyLightOverTheWholeSequence) {
   EXPECT_EQ(meyer.step(source), nullptr);
 }
 
-TEST(Meyer2006, FollowsLightThatItsBasesSpan) {
+TEST(Meyer2006, FollowsLightInTheSpanOfItsBases) {
   AnalyticOptions options{.extent = {80, 45}, .frames = 24};
   options.gain = [](int frame) { return frame % 2 == 0 ? 1.0f : 3.0f; };
   AnalyticSource source(options);
@@ -136,7 +136,7 @@ TEST(Meyer2006, FollowsLightThatItsBasesSpan) {
   }
 }
 
-TEST(Meyer2006, LeavesOutWhatIsNotFinite) {
+TEST(Meyer2006, LeavesOutNonFiniteLight) {
   AnalyticOptions options{.frames = 8, .noise = 0.0f};
   options.slide = {0.5f, 0.5f};
   options.edit = [](Frame& frame) {
@@ -163,19 +163,9 @@ TEST(Meyer2006, LeavesOutWhatIsNotFinite) {
   EXPECT_NEAR((*out)[0](6, 5), dark.truth({6, 5}, 0, 0), 1e-4f);
 }
 
-TEST(Meyer2006, KeepsConstantLightAsItIs) {
-  AnalyticOptions options{.frames = 10, .noise = 0.0f};
-  options.edit = [](Frame& frame) {
-    for (auto& plane : frame.lights[0].radiance) plane.fill(0.75f);
-  };
-  options.slide = {0.5f, 0.25f};
-  const Planes<3> out = last_picture("meyer2006", options);
-  for (int y = 0; y < 36; ++y) {
-    for (int x = 0; x < 64; ++x) ASSERT_NEAR(out[1](x, y), 0.75f, 1e-5f);
-  }
-}
+TEST(Meyer2006, KeepsConstantLight) { expect_keeps_constant_light("meyer2006", 1e-5f); }
 
-TEST(Meyer2006, RefusesMoreFramesThanItHolds) {
+TEST(Meyer2006, RejectsMoreFramesThanItHolds) {
   AnalyticSource source({.frames = 4});
   Meyer2006 meyer({{64, 36}, 1}, {.most_bytes = 3 * 64 * 36 * 150});
   try {
@@ -190,7 +180,7 @@ TEST(Meyer2006, RefusesMoreFramesThanItHolds) {
 }
 
 // A sequence is read whole, so after a restart the source begins with the frame that comes next.
-TEST(Meyer2006, GoesOnAfterARestart) {
+TEST(Meyer2006, ResumesWithTheSameBits) {
   AnalyticOptions options{.extent = {65, 17}, .frames = 9};
   options.slide = {1.3f, -0.4f};
   const Planes<3> straight = last_picture("meyer2006", options);
@@ -230,11 +220,11 @@ TEST(Meyer2006, GoesOnAfterARestart) {
   EXPECT_THROW(Meyer2006({options.extent, 2}).load(fewer), std::runtime_error);
 }
 
-TEST(Meyer2006, ForgetsAtCuts) { expect_forgets_at_cuts("meyer2006"); }
-TEST(Meyer2006, DoesNotAskWhetherFramesAreStill) {
+TEST(Meyer2006, ForgetsHistoryAtCuts) { expect_forgets_at_cuts("meyer2006"); }
+TEST(Meyer2006, SkippingStillFramesChangesNothing) {
   expect_still_frames_change_nothing("meyer2006");
 }
-TEST(Meyer2006, GivesTheSameBitsOnAnyNumberOfThreads) {
+TEST(Meyer2006, ThreadCountDoesNotChangeTheBits) {
   expect_same_bits_on_any_number_of_threads("meyer2006");
 }
 TEST(Meyer2006, RunsAtAnySize) { expect_runs_at_any_size("meyer2006"); }

@@ -25,7 +25,7 @@ PointTracks follow(const std::vector<Frame>& frames) {
   return {pointers, TapOptions{}};
 }
 
-TEST(PointTaps, AreThoseOfReprojection) {
+TEST(PointTaps, MatchTheReference) {
   const FloatTrapsOff nan_is_meant;
   const Extent extent{80, 45};
   const Frame before = make_random_frame({.extent = extent, .seed = 4}, 2);
@@ -52,7 +52,7 @@ TEST(PointTaps, AreThoseOfReprojection) {
   EXPECT_GT(found, 1000);
 }
 
-TEST(PointTracks, KeepOnePointForEachPixelOfAStillScene) {
+TEST(PointTracks, StillSceneHasOnePointPerPixel) {
   AnalyticOptions options{.extent = {20, 11}, .frames = 5};
   options.sky_columns = 4;
   const std::vector<Frame> frames = all_frames(options);
@@ -70,7 +70,7 @@ TEST(PointTracks, KeepOnePointForEachPixelOfAStillScene) {
   }
 }
 
-TEST(PointTracks, StayOnTheirPointsUnderMotion) {
+TEST(PointTracks, FollowTheirPointsUnderMotion) {
   AnalyticOptions options{.extent = {48, 27}, .frames = 12, .noise = 0.0f};
   options.slide = {1.3f, -0.6f};
   const std::vector<Frame> frames = all_frames(options);
@@ -110,7 +110,7 @@ TEST(PointTracks, StayOnTheirPointsUnderMotion) {
   EXPECT_GT(compared, 8000);
 }
 
-TEST(PointTracks, MarksLightThatIsNotFinite) {
+TEST(PointTracks, NonFiniteLightIsMarked) {
   std::vector<Frame> frames = all_frames({.extent = {8, 5}, .frames = 2});
   frames[1].lights[0].radiance[2](3, 2) = std::numeric_limits<float>::quiet_NaN();
   const PointTracks tracks = follow(frames);
@@ -135,7 +135,7 @@ BasisHistory history_of_ones(const Frame& frame, const HistoryOptions& options, 
   return history;
 }
 
-TEST(BasisHistory, DropsTapsWithoutHistoryIfAsked) {
+TEST(BasisHistory, DropsTapsWithoutHistory) {
   AnalyticOptions options{.extent = {20, 11}, .frames = 2};
   options.slide = {0.5f, 0.0f};
   const std::vector<Frame> frames = all_frames(options);
@@ -152,7 +152,7 @@ TEST(BasisHistory, DropsTapsWithoutHistoryIfAsked) {
   }
 }
 
-TEST(BasisHistory, LooksAroundWherePixelsLostTheirSurfaceIfAsked) {
+TEST(BasisHistory, WidensTheSearchAtLostSurfaces) {
   AnalyticOptions options{.extent = {20, 11}, .frames = 2};
   options.slide = {1.5f, 0.0f};
   const std::vector<Frame> frames = all_frames(options);
