@@ -30,7 +30,7 @@ TEST(Camera, PixelsAndPointsRoundTrip) {
   }
 }
 
-TEST(Camera, IsARotationWithoutMirroring) {
+TEST(Camera, ViewTransformIsARotation) {
   const glm::mat3 m = tilted().world_to_view;
   const glm::mat3 product = m * glm::transpose(m);
   for (int i = 0; i < 3; ++i) {
@@ -39,7 +39,7 @@ TEST(Camera, IsARotationWithoutMirroring) {
   EXPECT_NEAR(glm::determinant(m), 1.0f, 1e-6f);
 }
 
-TEST(Camera, LooksAtTheTargetInTheMiddleOfTheImage) {
+TEST(Camera, TargetIsInTheImageCenter) {
   const Camera camera = tilted();
   const glm::vec3 view = camera.to_view({-4, 0.5f, 9});
   EXPECT_GT(view.z, 0.0f);
@@ -48,7 +48,7 @@ TEST(Camera, LooksAtTheTargetInTheMiddleOfTheImage) {
   EXPECT_NEAR(pixel.y, 53.5f, 1e-3f);
 }
 
-TEST(Camera, PutsUpAtTheTopAndRightAtTheRight) {
+TEST(Camera, ImageIsUprightAndNotMirrored) {
   const Camera camera = look_at({0, 0, 0}, {0, 0, -5}, {0, 1, 0}, 60.0f, kExtent);
   const glm::vec2 above = camera.view_to_pixel(camera.to_view({0, 1, -5}));
   EXPECT_LT(above.y, camera.center.y);
@@ -65,7 +65,7 @@ TEST(Camera, FieldOfViewSpansTheHeight) {
   EXPECT_NEAR(camera.view_to_pixel(camera.to_view({0, -half, -1})).y, 107.0f, 1e-4f);
 }
 
-TEST(Camera, FindsAnotherAxisWhereUpIsParallelOrMissing) {
+TEST(Camera, UpVectorParallelToTheViewIsReplaced) {
   for (const glm::vec3 target : {glm::vec3(0, 5, 0), glm::vec3(0, -5, 0), glm::vec3(3, 0, 0)}) {
     for (const glm::vec3 up : {target, -target, glm::vec3(0.0f)}) {
       const Camera camera = look_at({0, 0, 0}, target, up, 60.0f, kExtent);
@@ -75,7 +75,7 @@ TEST(Camera, FindsAnotherAxisWhereUpIsParallelOrMissing) {
   }
 }
 
-TEST(Camera, RefusesWhatGivesNoView) {
+TEST(Camera, RejectsInvalidViews) {
   EXPECT_THROW((void)look_at({1, 1, 1}, {1, 1, 1}, {0, 1, 0}, 60, kExtent), std::invalid_argument);
   EXPECT_THROW((void)look_at({0, 0, 0}, {1, 1, 1}, {0, 1, 0}, 0, kExtent), std::invalid_argument);
   EXPECT_THROW((void)look_at({0, 0, 0}, {1, 1, 1}, {0, 1, 0}, 180, kExtent), std::invalid_argument);

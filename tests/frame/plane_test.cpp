@@ -21,7 +21,7 @@ void expect_rows_on_lines(Extent extent, int channels) {
   for (const T value : plane.storage()) EXPECT_EQ(value, T{});
 }
 
-TEST(Plane, StartsEachRowOnALineAndAtZero) {
+TEST(Plane, RowsStartOnACacheLineAndAreZero) {
   for (const Extent extent : kSweepExtents) {
     expect_rows_on_lines<float>(extent, 1);
     expect_rows_on_lines<float>(extent, 28);
@@ -30,7 +30,7 @@ TEST(Plane, StartsEachRowOnALineAndAtZero) {
   }
 }
 
-TEST(Plane, PadsRowsToWholeLinesAndNotMore) {
+TEST(Plane, RowsArePaddedToWholeCacheLines) {
   EXPECT_EQ(Plane<float>({1, 2}).stride(), 16u);
   EXPECT_EQ(Plane<float>({16, 2}).stride(), 16u);
   EXPECT_EQ(Plane<float>({17, 2}).stride(), 32u);
@@ -39,7 +39,7 @@ TEST(Plane, PadsRowsToWholeLinesAndNotMore) {
   EXPECT_EQ(Plane<float>({5, 3}, 4).storage().size(), 96u);
 }
 
-TEST(Plane, RowsAndPlanesDoNotMeetInTheSameSetsOfACache) {
+TEST(Plane, RowsAndPlanesAvoidCacheConflicts) {
   const Plane<float> first({1024, 8}), second({1024, 8});
   EXPECT_EQ(first.stride(), 1024u + 16u);
   const auto place = [](const float* p) { return reinterpret_cast<std::uintptr_t>(p) % 4096; };
@@ -47,7 +47,7 @@ TEST(Plane, RowsAndPlanesDoNotMeetInTheSameSetsOfACache) {
   EXPECT_NE(place(first.row(0)), place(second.row(0)));
 }
 
-TEST(Plane, AddressesPixelsByColumnRowAndChannel) {
+TEST(Plane, PixelsAreAddressedByColumnRowAndChannel) {
   Plane<float> plane({5, 3}, 2);
   plane.at(4, 2)[1] = 7.0f;
   plane(0, 1) = 3.0f;
@@ -56,7 +56,7 @@ TEST(Plane, AddressesPixelsByColumnRowAndChannel) {
   EXPECT_EQ(plane(4, 2), 0.0f);
 }
 
-TEST(Plane, ClonesToStorageOfItsOwn) {
+TEST(Plane, CloneHasItsOwnStorage) {
   Plane<int> plane({5, 3});
   plane(2, 1) = 4;
   const Plane<int> copy = plane.clone();
@@ -66,7 +66,7 @@ TEST(Plane, ClonesToStorageOfItsOwn) {
   EXPECT_TRUE(Plane<int>().clone().empty());
 }
 
-TEST(Plane, CopiesOnlyFromItsOwnShape) {
+TEST(Plane, CopyRejectsAnotherShape) {
   Plane<float> plane({5, 3}, 2), same({5, 3}, 2);
   same.at(4, 2)[1] = 2.0f;
   const float* storage = plane.row(0);
@@ -78,7 +78,7 @@ TEST(Plane, CopiesOnlyFromItsOwnShape) {
   EXPECT_THROW(plane.copy_from(Plane<float>()), std::invalid_argument);
 }
 
-TEST(Plane, ReshapeAllocatesOnlyForMoreThanThereEverWas) {
+TEST(Plane, ReshapeAllocatesOnlyBeyondTheLargestSizeSoFar) {
   Plane<float> plane({65, 17}, 16);
   const float* first = plane.row(0);
   for (const int channels : {4, 13, 16}) {
@@ -95,7 +95,7 @@ TEST(Plane, ReshapeAllocatesOnlyForMoreThanThereEverWas) {
   EXPECT_THROW(plane.reshape(65), std::invalid_argument);
 }
 
-TEST(Plane, RefusesSizesThatNoImageHas) {
+TEST(Plane, RejectsInvalidSizes) {
   EXPECT_THROW(Plane<float>({0, 0}), std::invalid_argument);
   EXPECT_THROW(Plane<float>({-1, 4}), std::invalid_argument);
   EXPECT_THROW(Plane<float>({4, kMaxSide + 1}), std::invalid_argument);
@@ -103,7 +103,7 @@ TEST(Plane, RefusesSizesThatNoImageHas) {
   EXPECT_THROW(Plane<float>({4, 4}, 65), std::invalid_argument);
 }
 
-TEST(Plane, EnsureExtentKeepsWhatFitsAndReplacesTheRest) {
+TEST(Plane, EnsureExtentReplacesPlanesOfAnotherSize) {
   Plane<float> plane({5, 3});
   plane(1, 1) = 6.0f;
   ensure_extent(plane, {5, 3});

@@ -28,7 +28,7 @@ double chi_square(const std::function<std::uint32_t(std::uint32_t)>& draw) {
   return sum;
 }
 
-TEST(Random, IsUniformAlongEachWordOfItsKey) {
+TEST(Random, HashIsUniformAlongEachWordOfItsKey) {
   const std::array<std::function<std::uint32_t(std::uint32_t)>, 5> draws{
       {[](std::uint32_t i) { return mix32(i); },
        [](std::uint32_t i) { return hash_key(i, 3u, 5u); },
@@ -38,7 +38,7 @@ TEST(Random, IsUniformAlongEachWordOfItsKey) {
   for (const auto& draw : draws) EXPECT_NEAR(chi_square(draw), kMean, 5.0 * kSpread);
 }
 
-TEST(Random, NeighborsInAKeyAreIndependent) {
+TEST(Random, HashesOfNeighboringKeysAreIndependent) {
   // Pairs of pixel and its right neighbor, 8 x 8 bins: 63 degrees of freedom again.
   EXPECT_NEAR(chi_square([](std::uint32_t i) {
                 const std::uint32_t a = hash_key(1u, i, 2u), b = hash_key(1u, i + 1, 2u);
@@ -47,7 +47,7 @@ TEST(Random, NeighborsInAKeyAreIndependent) {
               kMean, 5.0 * kSpread);
 }
 
-TEST(Random, FlipsHalfOfTheBitsForEachInputBit) {
+TEST(Random, EachInputBitFlipsHalfOfTheOutput) {
   for (int bit = 0; bit < 32; ++bit) {
     int flipped = 0;
     for (std::uint32_t i = 0; i < 2000; ++i) {
@@ -64,7 +64,7 @@ TEST(Random, OrderOfWordsMatters) {
   EXPECT_NE(hash_key(0u, 0u), hash_key(0u, 0u, 0u));
 }
 
-TEST(Random, UnitIsHalfOpen) {
+TEST(Random, UnitIntervalIsHalfOpen) {
   EXPECT_EQ(to_unit(0u), 0.0f);
   EXPECT_LT(to_unit(0xffffffffu), 1.0f);
   EXPECT_EQ(to_unit(0x80000000u), 0.5f);

@@ -65,19 +65,19 @@ TEST(State, BytesDoNotDependOnPadding) {
   EXPECT_EQ(a.bytes(), b.bytes());
 }
 
-TEST(State, RefusesEveryTruncation) {
+TEST(State, RejectsEveryTruncation) {
   const std::string whole = written();
   for (std::size_t size = 0; size < whole.size(); ++size) {
     EXPECT_THROW((void)read(whole.substr(0, size)), std::runtime_error) << size << " bytes";
   }
 }
 
-TEST(State, RefusesBytesThatAreLeft) {
+TEST(State, RejectsTrailingBytes) {
   EXPECT_THAT([] { (void)read(written() + "x"); },
               ThrowsMessage<std::runtime_error>(HasSubstr("1 bytes too many")));
 }
 
-TEST(State, NamesTheValueThatIsNotThere) {
+TEST(State, ErrorNamesTheMissingValue) {
   const std::string bytes = written();
   EXPECT_THAT(
       [&] {
@@ -88,7 +88,7 @@ TEST(State, NamesTheValueThatIsNotThere) {
       ThrowsMessage<std::runtime_error>(AllOf(HasSubstr("frame"), HasSubstr("found 'count'"))));
 }
 
-TEST(State, RefusesAValueOfAnotherSize) {
+TEST(State, RejectsAValueOfAnotherSize) {
   const std::string bytes = written();
   EXPECT_THAT(
       [&] {
@@ -99,7 +99,7 @@ TEST(State, RefusesAValueOfAnotherSize) {
       ThrowsMessage<std::runtime_error>(AllOf(HasSubstr("count"), HasSubstr("expected 8"))));
 }
 
-TEST(State, RefusesAnotherShapeThanThePlaneHas) {
+TEST(State, RejectsAPlaneOfAnotherShape) {
   StateWriter out;
   out.plane("image", ramp({5, 3}, 2));
   const std::string bytes(out.bytes().data(), out.bytes().size());
@@ -120,7 +120,7 @@ TEST(State, RefusesAnotherShapeThanThePlaneHas) {
   EXPECT_THROW(in.plane("image", plane), std::runtime_error);
 }
 
-TEST(State, RefusesABoolThatIsNone) {
+TEST(State, RejectsAnInvalidBool) {
   StateWriter out;
   out.value("known", std::uint8_t{2});
   StateReader in({out.bytes().data(), out.bytes().size()});
@@ -129,7 +129,7 @@ TEST(State, RefusesABoolThatIsNone) {
               ThrowsMessage<std::runtime_error>(HasSubstr("2, expected 0 or 1")));
 }
 
-TEST(State, RefusesDamagedSizesBeforeAskingForMemory) {
+TEST(State, RejectsDamagedSizesBeforeAllocating) {
   for (const std::int32_t bad : {-1, 0, 65536, 65537, 0x7fffffff}) {
     const std::int32_t shape[3] = {bad, 65536, 64};
     StateWriter out;
@@ -141,7 +141,7 @@ TEST(State, RefusesDamagedSizesBeforeAskingForMemory) {
   }
 }
 
-TEST(State, SurvivesAnyDamagedByteWithoutAnythingButItsException) {
+TEST(State, DamagedBytesThrowNoOtherException) {
   const std::string whole = written();
   int refused = 0;
   for (std::size_t i = 0; i < whole.size(); ++i) {

@@ -10,7 +10,7 @@
 namespace eigenlight {
 namespace {
 
-TEST(Strips, CoverEachPixelOnceAndEachTileInOrder) {
+TEST(Strips, CoverEachPixelOnce) {
   for (const Extent extent : kSweepExtents) {
     for (const TileGrid& grid :
          {stage_tiles(extent), TileGrid(extent, 32, 32), TileGrid(extent, 1000, 7)}) {
@@ -33,7 +33,7 @@ TEST(Strips, CoverEachPixelOnceAndEachTileInOrder) {
   }
 }
 
-TEST(Strips, AreAsWideAsTheirTilesAndNoWiderThanAllowed) {
+TEST(Strips, StayWithinTheWidthLimit) {
   const TileGrid grid({3000, 70}, 32, 32);
   for_each_strip(grid, [&](const Strip& strip) {
     EXPECT_EQ(strip.area.x0, grid.tile(strip.area.index).x0);
@@ -43,7 +43,7 @@ TEST(Strips, AreAsWideAsTheirTilesAndNoWiderThanAllowed) {
   });
 }
 
-TEST(Strips, AreWideForFewThreadsAndNarrowForMany) {
+TEST(Strips, NarrowWithTheNumberOfThreads) {
   const TileGrid grid({1280, 720}, 32, 32);
   const auto count_strips = [&](int threads) {
     set_thread_count(threads);

@@ -41,7 +41,7 @@ TEST(TileGrid, CoversEachPixelOnce) {
   }
 }
 
-TEST(TileGrid, RefusesEmptyImagesAndTiles) {
+TEST(TileGrid, RejectsEmptyImagesAndTiles) {
   EXPECT_THROW(TileGrid({0, 4}, 8, 8), std::invalid_argument);
   EXPECT_THROW(TileGrid({4, 4}, 0, 8), std::invalid_argument);
   EXPECT_THROW(TileGrid({4, 4}, 8, -1), std::invalid_argument);
@@ -64,7 +64,7 @@ TEST_P(ThreadCount, ForEachTileVisitsTheGrid) {
   EXPECT_EQ(std::accumulate(pixels.begin(), pixels.end(), 0), 65 * 17);
 }
 
-TEST_P(ThreadCount, ExceptionsReachTheCallerAndTheNextLoopWorks) {
+TEST_P(ThreadCount, ExceptionsReachTheCaller) {
   const auto fail = [](int i) {
     if (i == 37) throw std::out_of_range("thirty-seven");
   };
@@ -79,7 +79,7 @@ TEST_P(ThreadCount, ExceptionsReachTheCallerAndTheNextLoopWorks) {
   EXPECT_EQ(calls.load(), 100);
 }
 
-TEST_P(ThreadCount, LoopsMayNest) {
+TEST_P(ThreadCount, LoopsCanBeNested) {
   std::atomic<int> calls = 0;
   parallel_for(8, [&](int) { parallel_for(8, [&](int) { ++calls; }); });
   EXPECT_EQ(calls.load(), 64);
@@ -88,7 +88,7 @@ TEST_P(ThreadCount, LoopsMayNest) {
 INSTANTIATE_TEST_SUITE_P(Threads, ThreadCount, ::testing::Values(1, 2, 3),
                          ::testing::PrintToStringParamName());
 
-TEST(SetThreadCount, KeepsTheNumberAndZeroMeansOnePerCore) {
+TEST(SetThreadCount, ZeroMeansOneThreadPerCore) {
   set_thread_count(3);
   EXPECT_EQ(thread_count(), 3);
   set_thread_count(0);

@@ -19,7 +19,7 @@ GBuffer wall() {
   return surface;
 }
 
-TEST(UsableSurface, IsOneWithAnIdADepthAndANormal) {
+TEST(UsableSurface, NeedsIdDepthAndNormal) {
   GBuffer surface = wall();
   EXPECT_TRUE(is_usable_surface(surface, 0, 0));
   surface.id(0, 0) = 0;
@@ -27,7 +27,7 @@ TEST(UsableSurface, IsOneWithAnIdADepthAndANormal) {
 }
 
 // No traps are turned off here: NaN must be no floating-point fault.
-TEST(UsableSurface, RefusesDepthsThatCannotBeSquared) {
+TEST(UsableSurface, RejectsDepthsWhoseSquareOverflows) {
   for (const float depth : {kNan, kInfinity, -kInfinity, -3.0f, 0.0f, 1e-40f, 1e30f}) {
     GBuffer surface = wall();
     surface.depth(0, 0) = depth;
@@ -40,7 +40,7 @@ TEST(UsableSurface, RefusesDepthsThatCannotBeSquared) {
   }
 }
 
-TEST(UsableSurface, RefusesNormalsThatAreNone) {
+TEST(UsableSurface, RejectsInvalidNormals) {
   for (const float component : {kNan, kInfinity, -3.0f, 1e30f}) {
     GBuffer surface = wall();
     surface.normal[1](0, 0) = component;
