@@ -61,14 +61,15 @@ struct LiveSource::State {
         tracer({geometry, surfaces, lights}, opts.bounces),
         grid(opts.extent, kTileSide, kTileSide),
         hits(opts.extent),
-        drawn(opts.extent),
+        samples_drawn(opts.extent),
         counters(static_cast<std::size_t>(grid.count())) {}
 
-  void pose(Frame& frame);
+  void set_scene(Frame& frame);
   void render(const Tile& tile, Frame& frame);
   template <typename Count>
-  void draw(const Tile& tile, int frame, const Count& count, Planes<3>& mean, RayCounters& tally);
-  [[nodiscard]] glm::vec3 direct(glm::ivec2 at, int frame, RayCounters& tally) const;
+  void sample_indirect(const Tile& tile, int frame, const Count& count, Planes<3>& mean,
+                       RayCounters& tally);
+  [[nodiscard]] glm::vec3 sample_direct(glm::ivec2 at, int frame, RayCounters& tally) const;
   void add_counters(FrameInput& frame) const;
   [[nodiscard]] std::uint32_t key(glm::ivec2 at, std::uint32_t stream, int frame) const {
     return hash_key(options.seed, frame, at.x, at.y, stream);
@@ -86,12 +87,12 @@ struct LiveSource::State {
   PreviousView previous;
   std::vector<glm::mat4> previous_poses;  // of all instances
   Plane<GuideHit> hits;                   // of the last delivered frame
-  Plane<std::uint32_t> drawn;             // indirect samples drawn so far in each of its pixels
+  Plane<std::uint32_t> samples_drawn;     // of indirect light, per pixel of that frame
   std::vector<RayCounters> counters;      // per tile
 };
 
 // Sets camera, poses and lights of `frame.index`, and remembers those of the previous frame.
-void LiveSource::State::pose(Frame& frame) {
+void LiveSource::State::set_scene(Frame& frame) {
   const SceneState now = animation->state(frame.index);
   const SceneState then = animation->state(frame.previous_index);
   EL_CHECK(then.poses.size() == now.poses.size(),
@@ -112,8 +113,8 @@ void LiveSource::State::pose(Frame& frame) {
 // Writes to `mean` the mean of `count(x, y)` new samples of indirect light at each surface pixel of
 // the tile, and 0 at all other pixels.
 template <typename Count>
-void LiveSource::State::draw(const Tile& tile, int frame, const Count& count, Planes<3>& mean,
-                             RayCounters& tally) {
+void LiveSource::State::sample_indirect(const Tile& tile, int frame, const Count& count,
+                                        Planes<3>& mean, RayCounters& tally) {
   std::array<FiniteMean, kTileSide * kTileSide> means;
   SampleQueue queue(tracer, tally);
   auto pixel = means.begin();
@@ -121,8 +122,8 @@ void LiveSource::State::draw(const Tile& tile, int frame, const Count& count, Pl
     for (int x = tile.x0; x < tile.x1; ++x, ++pixel) {
       if (hits(x, y).kind != GuideHit::Kind::kSurface) continue;
       const std::uint32_t k = key({x, y}, kIndirectStream, frame);
-      const std::uint32_t end = drawn(x, y) + count(x, y);
-      for (std::uint32_t& i = drawn(x, y); i != end; ++i) {
+      const std::uint32_t end = samples_drawn(x, y) + count(x, y);
+      for (std::uint32_t& i = samples_drawn(x, y); i != end; ++i) {
         queue.add(hits(x, y).point, Sampler(k, i), *pixel);
       }
     }
@@ -137,7 +138,7 @@ void LiveSource::State::draw(const Tile& tile, int frame, const Count& count, Pl
   }
 }
 
-glm::vec3 LiveSource::State::direct(glm::ivec2 at, int frame, RayCounters& tally) const {
+glm::vec3 LiveSource::State::sample_direct(glm::ivec2 at, int frame, RayCounters& tally) const {
   const GuideHit& guide = hits(at.x, at.y);
   if (guide.kind != GuideHit::Kind::kSurface || options.direct_spp == 0) return glm::vec3(0.0f);
   const std::uint32_t k = key(at, kDirectStream, frame);
@@ -154,12 +155,12 @@ void LiveSource::State::render(const Tile& tile, Frame& frame) {
   tally.rays = trace_guides({geometry, surfaces, lights}, previous, tile, frame, hits);
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0; x < tile.x1; ++x) {
-      drawn(x, y) = 0;
-      store_pixel(direct({x, y}, frame.index, tally), x, y, frame.direct);
+      samples_drawn(x, y) = 0;
+      store_pixel(sample_direct({x, y}, frame.index, tally), x, y, frame.direct);
     }
   }
   const auto count = [this](int, int) { return static_cast<std::uint32_t>(options.spp); };
-  draw(tile, frame.index, count, frame.lights[0].radiance, tally);
+  sample_indirect(tile, frame.index, count, frame.lights[0].radiance, tally);
   counters[static_cast<std::size_t>(tile.index)] = tally;
 }
 
@@ -196,7 +197,7 @@ bool LiveSource::next(Frame& frame) {
   frame.spp = s.options.spp;
   frame.rays = 0;
   frame.non_finite_samples = 0;
-  s.pose(frame);
+  s.set_scene(frame);
   for_each_tile(s.grid, [&](const Tile& tile) { s.render(tile, frame); });
   s.add_counters(frame);
   ++s.position;
@@ -217,7 +218,7 @@ bool LiveSource::resample(const Plane<std::uint8_t>& extra, FrameInput& frame,
   for_each_tile(s.grid, [&](const Tile& tile) {
     RayCounters tally;
     const auto count = [&extra](int x, int y) { return static_cast<std::uint32_t>(extra(x, y)); };
-    s.draw(tile, frame.index, count, mean, tally);
+    s.sample_indirect(tile, frame.index, count, mean, tally);
     s.counters[static_cast<std::size_t>(tile.index)] = tally;
   });
   s.add_counters(frame);
@@ -238,7 +239,7 @@ PictureStats LiveSource::picture(const AntialiasOptions& options, const Frame& f
 
 void LiveSource::rewind_resampling() {
   // Pixels without a surface draw no samples, so their value does not matter.
-  state_->drawn.fill(static_cast<std::uint32_t>(state_->options.spp));
+  state_->samples_drawn.fill(static_cast<std::uint32_t>(state_->options.spp));
 }
 
 }  // namespace eigenlight

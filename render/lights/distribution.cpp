@@ -23,7 +23,7 @@ Distribution::Distribution(std::span<const float> weights) {
   }
 }
 
-float Distribution::chance(std::size_t index) const {
+float Distribution::probability(std::size_t index) const {
   return upper_[index] - (index > 0 ? upper_[index - 1] : 0.0f);
 }
 

@@ -27,12 +27,12 @@ class Distribution {
 
   struct Choice {
     std::size_t index = 0;
-    float chance = 0.0f;
+    float probability = 0.0f;
     float remainder = 0.0f;  ///< position of u within the index; uniform in [0, 1)
   };
   /// `u` in [0, 1). Requires total() > 0.
   [[nodiscard]] Choice sample(float u) const;
-  [[nodiscard]] float chance(std::size_t index) const;
+  [[nodiscard]] float probability(std::size_t index) const;
 
  private:
   std::vector<float> upper_;  // cumulative sums divided by the total; 1 from the last weight on

@@ -57,10 +57,10 @@ glm::vec3 EnvironmentLight::radiance(const glm::vec3& direction) const {
 
 // Density per steradian from the probability of a texel. At row coordinate y a texel has a solid
 // angle of 2 pi^2 sin(theta) / pixels.
-float EnvironmentLight::texel_pdf(float chance, float y) const {
+float EnvironmentLight::texel_pdf(float probability, float y) const {
   const float sine = std::sin(kPi * y / static_cast<float>(extent_.height));
   if (!(sine > 0.0f)) return 0.0f;
-  return chance * static_cast<float>(extent_.pixels()) / (2.0f * kPi * kPi * sine);
+  return probability * static_cast<float>(extent_.pixels()) / (2.0f * kPi * kPi * sine);
 }
 
 EnvironmentLight::Sample EnvironmentLight::sample(const glm::vec2& u) const {
@@ -72,7 +72,7 @@ EnvironmentLight::Sample EnvironmentLight::sample(const glm::vec2& u) const {
   const float theta = y / static_cast<float>(extent_.height) * kPi;
   const float sine = std::sin(theta);
   return {{sine * std::cos(phi), std::cos(theta), sine * std::sin(phi)},
-          texel_pdf(row.chance * column.chance, y)};
+          texel_pdf(row.probability * column.probability, y)};
 }
 
 float EnvironmentLight::pdf(const glm::vec3& direction) const {
@@ -80,7 +80,7 @@ float EnvironmentLight::pdf(const glm::vec3& direction) const {
   const auto y = static_cast<std::size_t>(std::clamp(static_cast<int>(p.y), 0, extent_.height - 1));
   const auto x = static_cast<std::size_t>(std::clamp(static_cast<int>(p.x), 0, extent_.width - 1));
   if (!(columns_[y].total() > 0.0)) return 0.0f;
-  return texel_pdf(rows_.chance(y) * columns_[y].chance(x), p.y);
+  return texel_pdf(rows_.probability(y) * columns_[y].probability(x), p.y);
 }
 
 }  // namespace eigenlight

@@ -34,7 +34,7 @@ class EnvironmentLight {
  private:
   [[nodiscard]] const glm::vec3& texel(int x, int y) const;
   [[nodiscard]] glm::vec2 to_pixel(const glm::vec3& direction) const;
-  [[nodiscard]] float texel_pdf(float chance, float y) const;
+  [[nodiscard]] float texel_pdf(float probability, float y) const;
 
   Extent extent_;
   std::vector<glm::vec3> texels_;

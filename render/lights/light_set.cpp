@@ -27,7 +27,7 @@ class Picker {
     u_ -= weight;
     return false;
   }
-  [[nodiscard]] float chance() const { return last_ / total_; }
+  [[nodiscard]] float probability() const { return last_ / total_; }
   [[nodiscard]] float remainder() const { return std::clamp(u_ / last_, 0.0f, kBelowOne); }
 
  private:
@@ -37,10 +37,10 @@ class Picker {
 
 float half_angle(const SunLight& sun) { return 0.5f * sun.angular_diameter * kPi / 180.0f; }
 
-void divide(std::optional<LightSample>& sample, float chance) {
+void divide(std::optional<LightSample>& sample, float probability) {
   if (!sample) return;
-  sample->value /= chance;
-  sample->pdf *= chance;
+  sample->value /= probability;
+  sample->pdf *= probability;
 }
 
 }  // namespace
@@ -104,7 +104,7 @@ bool LightSet::has_visible_surfaces() const {
   return has_emissive_materials_ || !lights_.rects.empty() || !lights_.spheres.empty();
 }
 
-bool LightSet::is_visible() const {
+bool LightSet::has_visible_lights() const {
   return has_visible_surfaces() || !environment_.is_black() || lights_.sky != glm::vec3(0.0f);
 }
 
@@ -116,11 +116,12 @@ std::optional<LightSample> LightSet::sample_sun(const glm::vec3& normal, const g
   for (std::size_t i = 0; i < disks_.size(); ++i) {
     if (!picker.take(sun_estimate(i, normal))) continue;
     const SunLight& sun = lights_.suns[i];
-    const float rise = disks_[i].rise;
-    const glm::vec3 direction = sample_cone(sun.to_light, rise, {picker.remainder(), u.y});
+    const float one_minus_cosine = disks_[i].one_minus_cosine;
+    const glm::vec3 direction =
+        sample_cone(sun.to_light, one_minus_cosine, {picker.remainder(), u.y});
     // Irradiance of the disk is radiance * pi sin^2 a, and its density is 1 / (2 pi (1 - cos a)).
     // Hence radiance / density = irradiance * 2 / (1 + cos a), which also holds for a = 0.
-    const float value = 2.0f / (2.0f - rise) / picker.chance();
+    const float value = 2.0f / (2.0f - one_minus_cosine) / picker.probability();
     return LightSample{direction, kInfinity, sun.irradiance * value, kInfinity};
   }
   return std::nullopt;
@@ -171,18 +172,18 @@ std::optional<LightSample> LightSet::sample_local(const glm::vec3& from, float p
     return std::optional<LightSample>();  // rounding: the weights add up to slightly less
   };
   sample = choose();
-  divide(sample, picker.chance());
+  divide(sample, picker.probability());
   return sample;
 }
 
-glm::vec3 LightSet::escaped(const glm::vec3& direction) const {
+glm::vec3 LightSet::background(const glm::vec3& direction) const {
   return lights_.sky + lights_.environment_scale * environment_.radiance(direction);
 }
 
-glm::vec3 LightSet::escaped(const glm::vec3& from, const glm::vec3& direction, float pdf) const {
+glm::vec3 LightSet::background(const glm::vec3& from, const glm::vec3& direction, float pdf) const {
   if (environment_.is_black()) return lights_.sky;
-  const float chance = environment_estimate() / local_total(from);
-  const float other = chance > 0.0f ? chance * environment_.pdf(direction) : 0.0f;
+  const float probability = environment_estimate() / local_total(from);
+  const float other = probability > 0.0f ? probability * environment_.pdf(direction) : 0.0f;
   return lights_.sky +
          power_heuristic(pdf, other) * lights_.environment_scale * environment_.radiance(direction);
 }

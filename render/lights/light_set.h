@@ -52,15 +52,15 @@ class LightSet {
   [[nodiscard]] bool has_local() const;
 
   /// Whether cosine-distributed rays can meet light: true if there is any light but suns.
-  [[nodiscard]] bool is_visible() const;
+  [[nodiscard]] bool has_visible_lights() const;
   /// Whether some of that light comes from surfaces, so that an occlusion test is not enough.
   [[nodiscard]] bool has_visible_surfaces() const;
   /// Radiance of sky and environment along a guide ray that left the scene.
-  [[nodiscard]] glm::vec3 escaped(const glm::vec3& direction) const;
+  [[nodiscard]] glm::vec3 background(const glm::vec3& direction) const;
   /// The same for a ray from `from` that was sampled with density `pdf`. The environment is
   /// multiplied by its weight against sample_local() (power heuristic; Veach 1997, eq. 9.13).
-  [[nodiscard]] glm::vec3 escaped(const glm::vec3& from, const glm::vec3& direction,
-                                  float pdf) const;
+  [[nodiscard]] glm::vec3 background(const glm::vec3& from, const glm::vec3& direction,
+                                     float pdf) const;
 
   [[nodiscard]] std::optional<ShapeHit> intersect(const Ray& ray) const;
   [[nodiscard]] bool occluded(const Ray& ray) const { return intersect(ray).has_value(); }
@@ -76,8 +76,8 @@ class LightSet {
 
  private:
   struct SunDisk {
-    float sine = 0.0f;  // sine of the half angle
-    float rise = 0.0f;  // 1 - cosine of the half angle
+    float sine = 0.0f;              // sine of the half angle
+    float one_minus_cosine = 0.0f;  // 1 - cosine of the half angle
   };
   [[nodiscard]] float sun_estimate(std::size_t sun, const glm::vec3& normal) const;
   [[nodiscard]] float environment_estimate() const;

@@ -17,7 +17,7 @@ float rect_area(const AreaRect& rect) {
 
 // 1 - cosine of the half angle of the cone that the sphere covers; negative from inside. It is
 // 1 - sqrt(1 - s), written as s / (1 + sqrt(1 - s)) to keep its digits for distant spheres.
-float cone_rise(const SphereLight& sphere, const glm::vec3& from) {
+float cone_one_minus_cosine(const SphereLight& sphere, const glm::vec3& from) {
   const glm::vec3 to_center = sphere.center - from;
   const float sine2 = sphere.radius * sphere.radius / glm::dot(to_center, to_center);
   return sine2 < 1.0f ? sine2 / (1.0f + std::sqrt(1.0f - sine2)) : -1.0f;
@@ -25,7 +25,7 @@ float cone_rise(const SphereLight& sphere, const glm::vec3& from) {
 
 }  // namespace
 
-glm::vec3 around(const glm::vec3& axis, const glm::vec3& local) {
+glm::vec3 from_local_frame(const glm::vec3& axis, const glm::vec3& local) {
   const float sign = std::copysign(1.0f, axis.z);
   const float a = -1.0f / (sign + axis.z);
   const float b = axis.x * axis.y * a;
@@ -34,11 +34,11 @@ glm::vec3 around(const glm::vec3& axis, const glm::vec3& local) {
   return local.x * x + local.y * y + local.z * axis;
 }
 
-glm::vec3 sample_cone(const glm::vec3& axis, float rise, const glm::vec2& u) {
-  const float lift = u.x * rise;  // 1 - cosine
-  const float sine = std::sqrt(std::max(0.0f, lift * (2.0f - lift)));
+glm::vec3 sample_cone(const glm::vec3& axis, float one_minus_cosine, const glm::vec2& u) {
+  const float height = u.x * one_minus_cosine;  // 1 - cosine of the sample
+  const float sine = std::sqrt(std::max(0.0f, height * (2.0f - height)));
   const float phi = 2.0f * kPi * u.y;
-  return around(axis, {sine * std::cos(phi), sine * std::sin(phi), 1.0f - lift});
+  return from_local_frame(axis, {sine * std::cos(phi), sine * std::sin(phi), 1.0f - height});
 }
 
 std::optional<float> intersect(const AreaRect& rect, const Ray& ray) {
@@ -87,13 +87,14 @@ ShapeSample sample_shape(const AreaRect& rect, const glm::vec3& from, const glm:
 }
 
 ShapeSample sample_shape(const SphereLight& sphere, const glm::vec3& from, const glm::vec2& u) {
-  const float rise = cone_rise(sphere, from);
-  if (!(rise > 0.0f)) return {};
-  const glm::vec3 direction = sample_cone(glm::normalize(sphere.center - from), rise, u);
+  const float one_minus_cosine = cone_one_minus_cosine(sphere, from);
+  if (!(one_minus_cosine > 0.0f)) return {};
+  const glm::vec3 direction =
+      sample_cone(glm::normalize(sphere.center - from), one_minus_cosine, u);
   const std::optional<float> t = intersect(sphere, Ray{from, direction});
   // At the rim the ray may miss the sphere by rounding; the closest point of the ray is used then.
   const float distance = t ? *t : glm::dot(sphere.center - from, direction);
-  return {direction, distance, 1.0f / (2.0f * kPi * rise)};
+  return {direction, distance, 1.0f / (2.0f * kPi * one_minus_cosine)};
 }
 
 float shape_pdf(const AreaRect& rect, const glm::vec3& direction, float distance) {
@@ -104,8 +105,8 @@ float shape_pdf(const AreaRect& rect, const glm::vec3& direction, float distance
 }
 
 float shape_pdf(const SphereLight& sphere, const glm::vec3& from) {
-  const float rise = cone_rise(sphere, from);
-  return rise > 0.0f ? 1.0f / (2.0f * kPi * rise) : 0.0f;
+  const float one_minus_cosine = cone_one_minus_cosine(sphere, from);
+  return one_minus_cosine > 0.0f ? 1.0f / (2.0f * kPi * one_minus_cosine) : 0.0f;
 }
 
 float estimate_irradiance(const AreaRect& rect, const glm::vec3& from) {

@@ -43,9 +43,11 @@ struct ShapeSample {
 
 /// Takes `local` from an orthonormal right-handed frame with z along the unit vector `axis` to
 /// world space (Duff et al., JCGT 6(1), 2017).
-[[nodiscard]] glm::vec3 around(const glm::vec3& axis, const glm::vec3& local);
+[[nodiscard]] glm::vec3 from_local_frame(const glm::vec3& axis, const glm::vec3& local);
 
-/// Uniformly sampled direction in a cone around `axis`; `rise` is 1 - cosine of its half angle.
-[[nodiscard]] glm::vec3 sample_cone(const glm::vec3& axis, float rise, const glm::vec2& u);
+/// Uniformly sampled direction in a cone around `axis`; `one_minus_cosine` is 1 - cosine of its
+/// half angle.
+[[nodiscard]] glm::vec3 sample_cone(const glm::vec3& axis, float one_minus_cosine,
+                                    const glm::vec2& u);
 
 }  // namespace eigenlight

@@ -115,7 +115,7 @@ EyeHit trace_eye(const World& world, const Camera& camera, const glm::vec2& pixe
     eye.albedo = glm::clamp(eye.guide.point.albedo, 0.0f, 1.0f);
     eye.emission = world.lights.emitted(world.surfaces.emission(*hit), ray.direction);
   } else {
-    eye.emission = world.lights.escaped(ray.direction);
+    eye.emission = world.lights.background(ray.direction);
     return eye;
   }
   eye.depth = camera.to_view(eye.position).z;

@@ -25,14 +25,14 @@ bool PathTracer::sample_ray(const SurfacePoint& point, Sampler& sampler, Bounce&
   const float height = std::sqrt(1.0f - u.x);
   const glm::vec3 local(radius * std::cos(phi), radius * std::sin(phi), height);
   bounce.ray.origin = point.origin;
-  bounce.ray.direction = around(point.normal, local);
+  bounce.ray.direction = from_local_frame(point.normal, local);
   bounce.pdf = height / kPi;
   return glm::dot(bounce.ray.direction, point.geometric) > 0.0f && bounce.pdf > 0.0f;
 }
 
 void PathTracer::trace(Bounce& bounce, std::int64_t& rays) const {
   ++rays;
-  bounce.hit = world_.geometry.find(bounce.ray);
+  bounce.hit = world_.geometry.intersect_quad(bounce.ray);
   Ray rest = bounce.ray;
   if (bounce.hit) rest.t_max = bounce.hit->t;
   bounce.shape = world_.lights.intersect(rest);
@@ -44,13 +44,13 @@ void PathTracer::trace(Bounce& bounce, std::int64_t& rays) const {
 }
 
 // Radiance that lights emit along the ray, times the power heuristic against light sampling.
-glm::vec3 PathTracer::seen(const Bounce& bounce) const {
+glm::vec3 PathTracer::weighted_emission(const Bounce& bounce) const {
   const LightSet& lights = world_.lights;
   if (bounce.shape) {
     return power_heuristic(bounce.pdf, lights.pdf(bounce.ray, *bounce.shape)) *
            bounce.shape->radiance;
   }
-  if (!bounce.hit) return lights.escaped(bounce.ray.origin, bounce.ray.direction, bounce.pdf);
+  if (!bounce.hit) return lights.background(bounce.ray.origin, bounce.ray.direction, bounce.pdf);
   const glm::vec3& emission = world_.surfaces.emission(*bounce.hit);
   if (emission == glm::vec3(0.0f)) return emission;
   return power_heuristic(bounce.pdf, lights.pdf(bounce.ray, *bounce.hit)) *
@@ -59,8 +59,8 @@ glm::vec3 PathTracer::seen(const Bounce& bounce) const {
 
 // Light that the ray receives from emitters only, for rays that do not go on. If the sky is the
 // only light that a ray can meet, an occlusion test suffices, at a third of the cost.
-glm::vec3 PathTracer::look_for_lights(Bounce& bounce, std::int64_t& rays) const {
-  if (!world_.lights.is_visible()) return glm::vec3(0.0f);
+glm::vec3 PathTracer::emission_along(Bounce& bounce, std::int64_t& rays) const {
+  if (!world_.lights.has_visible_lights()) return glm::vec3(0.0f);
   if (world_.lights.has_visible_surfaces()) {
     trace(bounce, rays);
   } else {
@@ -70,34 +70,35 @@ glm::vec3 PathTracer::look_for_lights(Bounce& bounce, std::int64_t& rays) const 
     bounce.shape.reset();
     bounce.tint = world_.geometry.glass_tint(bounce.ray);
   }
-  return bounce.tint * seen(bounce);
+  return bounce.tint * weighted_emission(bounce);
 }
 
-glm::vec3 PathTracer::shadowed(const SurfacePoint& point, const LightSample& sample, const Aim& aim,
-                               std::int64_t& rays) const {
+glm::vec3 PathTracer::unoccluded_light(const SurfacePoint& point, const LightSample& sample,
+                                       const ShadowRayOptions& options, std::int64_t& rays) const {
   const float cosine = glm::dot(sample.direction, point.normal);
   if (!(cosine > 0.0f) || !(glm::dot(sample.direction, point.geometric) > 0.0f)) {
     return glm::vec3(0.0f);
   }
-  const Ray ray{point.origin, sample.direction, 0.0f, sample.distance * (1.0f - kShort), aim.quick};
+  const Ray ray{point.origin, sample.direction, 0.0f, sample.distance * (1.0f - kShort),
+                options.quick};
   ++rays;
   if (world_.geometry.occluded(ray) || world_.lights.occluded(ray)) return glm::vec3(0.0f);
-  const float weight = power_heuristic(sample.pdf, aim.weight_against * cosine / kPi);
+  const float weight = power_heuristic(sample.pdf, options.weight_against * cosine / kPi);
   return weight * cosine / kPi * sample.value * world_.geometry.glass_tint(ray);
 }
 
 // Light sampling: light that reaches the point directly from one sun and one local light.
-glm::vec3 PathTracer::aim(const SurfacePoint& point, Sampler& sampler, bool quick,
-                          std::int64_t& rays) const {
+glm::vec3 PathTracer::sample_lights(const SurfacePoint& point, Sampler& sampler, bool quick,
+                                    std::int64_t& rays) const {
   glm::vec3 sum(0.0f);
   if (world_.lights.has_suns()) {
     const auto sample = world_.lights.sample_sun(point.normal, sampler.next_2d());
-    if (sample) sum += shadowed(point, *sample, {0.0f, quick}, rays);
+    if (sample) sum += unoccluded_light(point, *sample, {0.0f, quick}, rays);
   }
   if (world_.lights.has_local()) {
     const float pick = sampler.next_1d();
     const auto sample = world_.lights.sample_local(point.origin, pick, sampler.next_2d());
-    if (sample) sum += shadowed(point, *sample, {1.0f, quick}, rays);
+    if (sample) sum += unoccluded_light(point, *sample, {1.0f, quick}, rays);
   }
   return sum;
 }
@@ -106,7 +107,7 @@ std::uint8_t PathTracer::lit_by(const SurfacePoint& point, std::int64_t& rays) c
   const glm::vec2 middle(0.5f);
   const auto reaches = [&](const std::optional<LightSample>& sample) {
     if (!sample) return false;
-    const glm::vec3 light = shadowed(point, *sample, {}, rays);
+    const glm::vec3 light = unoccluded_light(point, *sample, {}, rays);
     return std::max({light.x, light.y, light.z}) > 0.0f;
   };
   std::uint8_t lit = 0;
@@ -122,8 +123,8 @@ glm::vec3 PathTracer::direct(const SurfacePoint& point, Sampler& sampler,
                              std::int64_t& rays) const {
   Bounce bounce;
   const bool above = sample_ray(point, sampler, bounce);
-  const glm::vec3 sum = aim(point, sampler, false, rays);
-  return above ? sum + look_for_lights(bounce, rays) : sum;
+  const glm::vec3 sum = sample_lights(point, sampler, false, rays);
+  return above ? sum + emission_along(bounce, rays) : sum;
 }
 
 glm::vec3 PathTracer::indirect(const SurfacePoint& point, const Sampler& sampler,
@@ -144,7 +145,7 @@ void PathTracer::indirect(std::span<Path> paths, std::int64_t& rays) const {
     };
     for (int depth = 0; end != alive.begin(); ++depth) {
       keep([&](Path& path) { return send(path, depth, rays); });
-      std::for_each(alive.begin(), end, [&](Path* path) { look_up(*path); });
+      std::for_each(alive.begin(), end, [&](Path* path) { resolve_hit(*path); });
       keep([&](Path& path) { return arrive(path, depth); });
       keep([&](Path& path) { return reflect(path, depth, rays); });
     }
@@ -158,24 +159,25 @@ bool PathTracer::send(Path& path, int depth, std::int64_t& rays) const {
   if (!sample_ray(path.at, path.sampler, bounce)) return false;
   bounce.ray.quick = true;
   if (depth == bounces_) {  // light that the last surface reflects
-    path.light += path.throughput_ * look_for_lights(bounce, rays);
+    path.light += path.throughput_ * emission_along(bounce, rays);
     return false;
   }
   trace(bounce, rays);
   return true;
 }
 
-void PathTracer::look_up(Path& path) const {
+void PathTracer::resolve_hit(Path& path) const {
   Bounce& bounce = path.bounce_;
   if (!bounce.hit) return;
-  EmbreeScene::look_up(*bounce.hit);
+  EmbreeScene::resolve_triangle(*bounce.hit);
   world_.surfaces.prefetch(*bounce.hit);
 }
 
 bool PathTracer::arrive(Path& path, int depth) const {
   const Bounce& bounce = path.bounce_;
   path.throughput_ *= bounce.tint;
-  if (depth > 0) path.light += path.throughput_ * seen(bounce);  // depth 0 is direct light
+  // The emission that the first ray meets is direct light.
+  if (depth > 0) path.light += path.throughput_ * weighted_emission(bounce);
   if (!bounce.hit) return false;
   const auto [point, texel] = world_.surfaces.bounce_point(bounce.ray, *bounce.hit);
   path.at = point;
@@ -188,7 +190,7 @@ bool PathTracer::reflect(Path& path, int depth, std::int64_t& rays) const {
   if (path.texel_ != nullptr) path.at.albedo *= TexturePyramid::color(*path.texel_);
   glm::vec3& throughput = path.throughput_;
   throughput *= path.at.albedo;
-  path.light += throughput * aim(path.at, path.sampler, true, rays);
+  path.light += throughput * sample_lights(path.at, path.sampler, true, rays);
   if (depth == 0) return true;
   // Russian roulette starts at the second bounce.
   const float brightest = std::max({throughput.x, throughput.y, throughput.z});

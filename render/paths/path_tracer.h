@@ -60,23 +60,24 @@ class PathTracer {
     Ray ray;           // cosine-distributed
     float pdf = 0.0f;  // per steradian
     glm::vec3 tint{1.0f};
-    std::optional<QuadHit> hit;     // refers to a quad until look_up()
+    std::optional<QuadHit> hit;     // refers to a quad until resolve_hit()
     std::optional<ShapeHit> shape;  // excludes `hit`
   };
-  [[nodiscard]] glm::vec3 aim(const SurfacePoint& point, Sampler& sampler, bool quick,
-                              std::int64_t& rays) const;
-  struct Aim {
+  [[nodiscard]] glm::vec3 sample_lights(const SurfacePoint& point, Sampler& sampler, bool quick,
+                                        std::int64_t& rays) const;
+  struct ShadowRayOptions {
     float weight_against = 0.0f;  // 1: cosine-distributed rays find the light too; 0: they do not
     bool quick = false;           // Ray::quick
   };
-  [[nodiscard]] glm::vec3 shadowed(const SurfacePoint& point, const LightSample& sample,
-                                   const Aim& aim, std::int64_t& rays) const;
+  [[nodiscard]] glm::vec3 unoccluded_light(const SurfacePoint& point, const LightSample& sample,
+                                           const ShadowRayOptions& options,
+                                           std::int64_t& rays) const;
   [[nodiscard]] bool sample_ray(const SurfacePoint& point, Sampler& sampler, Bounce& bounce) const;
   void trace(Bounce& bounce, std::int64_t& rays) const;
-  [[nodiscard]] glm::vec3 look_for_lights(Bounce& bounce, std::int64_t& rays) const;
-  [[nodiscard]] glm::vec3 seen(const Bounce& bounce) const;
+  [[nodiscard]] glm::vec3 emission_along(Bounce& bounce, std::int64_t& rays) const;
+  [[nodiscard]] glm::vec3 weighted_emission(const Bounce& bounce) const;
   [[nodiscard]] bool send(Path& path, int depth, std::int64_t& rays) const;
-  void look_up(Path& path) const;
+  void resolve_hit(Path& path) const;
   [[nodiscard]] bool arrive(Path& path, int depth) const;
   [[nodiscard]] bool reflect(Path& path, int depth, std::int64_t& rays) const;
 

@@ -42,7 +42,7 @@ std::vector<EmbreePart> split_by_opacity(const Scene& scene, const Mesh& mesh) {
   if (holes) map.emplace(*texture, material.alpha_cutoff);
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
     const glm::uvec3& t = mesh.triangles[i];
-    const Opacity opacity = map ? map->between({uv[t.x], uv[t.y], uv[t.z]}) : Opacity::kSolid;
+    const Opacity opacity = map ? map->classify({uv[t.x], uv[t.y], uv[t.z]}) : Opacity::kSolid;
     if (opacity != Opacity::kHole) (opacity == Opacity::kSolid ? solid : mixed).push_back(i);
   }
   if (!solid.empty()) parts.push_back({&mesh, &material, nullptr, Quads(mesh, solid), {}});

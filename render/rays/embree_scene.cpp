@@ -70,20 +70,20 @@ void EmbreeScene::set_poses(std::span<const glm::mat4> poses) {
 }
 
 std::optional<Hit> EmbreeScene::intersect(const Ray& ray) const {
-  std::optional<QuadHit> hit = find(ray);
+  std::optional<QuadHit> hit = intersect_quad(ray);
   if (!hit) return std::nullopt;
-  look_up(*hit);
+  resolve_triangle(*hit);
   return *hit;
 }
 
-void EmbreeScene::look_up(QuadHit& hit) {
+void EmbreeScene::resolve_triangle(QuadHit& hit) {
   const Quads::Point p = hit.quads->point(hit.triangle, hit.u, hit.v);
   hit.triangle = p.triangle;
   hit.u = p.u;
   hit.v = p.v;
 }
 
-std::optional<QuadHit> EmbreeScene::find(const Ray& ray) const {
+std::optional<QuadHit> EmbreeScene::intersect_quad(const Ray& ray) const {
   const FloatTrapsOff embree_calculates_with_inf;
   RTCRayHit r{};
   r.ray = to_embree(ray);

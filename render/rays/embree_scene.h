@@ -63,10 +63,10 @@ class EmbreeScene {
   void set_poses(std::span<const glm::mat4> poses);
 
   [[nodiscard]] std::optional<Hit> intersect(const Ray& ray) const;
-  /// intersect() in two steps. find() prefetches the memory that look_up() reads; trace other rays
-  /// in between.
-  [[nodiscard]] std::optional<QuadHit> find(const Ray& ray) const;
-  static void look_up(QuadHit& hit);
+  /// intersect() in two steps. intersect_quad() prefetches the memory that resolve_triangle()
+  /// reads; trace other rays in between.
+  [[nodiscard]] std::optional<QuadHit> intersect_quad(const Ray& ray) const;
+  static void resolve_triangle(QuadHit& hit);
   [[nodiscard]] bool occluded(const Ray& ray) const;
   /// Product of the base colors of all thin glass between t_min and t_max; 1 without glass.
   [[nodiscard]] glm::vec3 glass_tint(const Ray& ray) const;

@@ -34,20 +34,21 @@ glm::vec3 unpack(const std::array<std::int16_t, 3>& n) {
 
 }  // namespace
 
-SurfaceTable::Triangle SurfaceTable::make_triangle(const Look& look, const glm::uvec3& corners) {
+SurfaceTable::Triangle SurfaceTable::make_triangle(const Appearance& appearance,
+                                                   const glm::uvec3& corners) {
   Triangle triangle{};
   for (int k = 0; k < 3; ++k) {
     const auto slot = static_cast<std::size_t>(k);
-    if (look.smooth) triangle.normals[slot] = pack(look.mesh->normals[corners[k]]);
-    if (look.texture != nullptr) triangle.uv[slot] = look.mesh->texcoords[corners[k]];
+    if (appearance.smooth) triangle.normals[slot] = pack(appearance.mesh->normals[corners[k]]);
+    if (appearance.texture != nullptr) triangle.uv[slot] = appearance.mesh->texcoords[corners[k]];
   }
-  if (look.texture == nullptr) return triangle;
-  const auto& p = look.mesh->positions;
+  if (appearance.texture == nullptr) return triangle;
+  const auto& p = appearance.mesh->positions;
   const float area =
       glm::length(glm::cross(p[corners.y] - p[corners.x], p[corners.z] - p[corners.x]));
   const glm::vec2 a = triangle.uv[1] - triangle.uv[0];
   const glm::vec2 b = triangle.uv[2] - triangle.uv[0];
-  const auto pixels = static_cast<float>(look.texture->extent().pixels());
+  const auto pixels = static_cast<float>(appearance.texture->extent().pixels());
   triangle.texels = area > 0.0f ? std::abs(a.x * b.y - a.y * b.x) * pixels / area : 0.0f;
   return triangle;
 }
@@ -55,28 +56,29 @@ SurfaceTable::Triangle SurfaceTable::make_triangle(const Look& look, const glm::
 SurfaceTable::SurfaceTable(const Scene& scene, const EmbreeScene& geometry) : geometry_(&geometry) {
   textures_.reserve(scene.textures.size());
   for (const Texture& texture : scene.textures) textures_.emplace_back(texture);
-  looks_.reserve(scene.meshes.size());
+  appearances_.reserve(scene.meshes.size());
   for (const Mesh& mesh : scene.meshes) {
     const Material& material = scene.materials[static_cast<std::size_t>(mesh.material)];
-    Look& look = looks_.emplace_back();
-    look.mesh = &mesh;
-    look.base_color = material.base_color;
-    look.emission = material.emission;
-    look.smooth = !mesh.normals.empty();
+    Appearance& appearance = appearances_.emplace_back();
+    appearance.mesh = &mesh;
+    appearance.base_color = material.base_color;
+    appearance.emission = material.emission;
+    appearance.smooth = !mesh.normals.empty();
     if (material.texture >= 0 && !mesh.texcoords.empty()) {
-      look.texture = &textures_[static_cast<std::size_t>(material.texture)];
+      appearance.texture = &textures_[static_cast<std::size_t>(material.texture)];
     }
-    if (!look.smooth && look.texture == nullptr) continue;
-    look.triangles.reserve(mesh.triangles.size());
-    for (const glm::uvec3& t : mesh.triangles) look.triangles.push_back(make_triangle(look, t));
+    if (!appearance.smooth && appearance.texture == nullptr) continue;
+    appearance.triangles.reserve(mesh.triangles.size());
+    for (const glm::uvec3& t : mesh.triangles)
+      appearance.triangles.push_back(make_triangle(appearance, t));
   }
   for (const Instance& instance : scene.instances) {
-    look_of_.push_back(&looks_[static_cast<std::size_t>(instance.mesh)]);
+    appearance_of_.push_back(&appearances_[static_cast<std::size_t>(instance.mesh)]);
   }
 }
 
 glm::vec3 SurfaceTable::position(const Hit& hit, const glm::mat4& to_world) const {
-  const Mesh& mesh = *look_of_[hit.instance]->mesh;
+  const Mesh& mesh = *appearance_of_[hit.instance]->mesh;
   const glm::uvec3 t = mesh.triangles[hit.triangle];
   const glm::vec3 local = (1.0f - hit.u - hit.v) * mesh.positions[t.x] +
                           hit.u * mesh.positions[t.y] + hit.v * mesh.positions[t.z];
@@ -85,9 +87,9 @@ glm::vec3 SurfaceTable::position(const Hit& hit, const glm::mat4& to_world) cons
 
 glm::vec3 SurfaceTable::shading_normal(const Hit& hit, const glm::vec3& geometric,
                                        const glm::vec3& view) const {
-  const Look& look = *look_of_[hit.instance];
-  if (!look.smooth) return geometric;
-  const auto& corners = look.triangles[hit.triangle].normals;
+  const Appearance& appearance = *appearance_of_[hit.instance];
+  if (!appearance.smooth) return geometric;
+  const auto& corners = appearance.triangles[hit.triangle].normals;
   const glm::vec3 local = (1.0f - hit.u - hit.v) * unpack(corners[0]) + hit.u * unpack(corners[1]) +
                           hit.v * unpack(corners[2]);
   const glm::vec3 world = geometry_->normal_matrix(hit.instance) * local;
@@ -107,32 +109,34 @@ SurfacePoint SurfaceTable::point(const Ray& ray, const Hit& hit, const glm::vec3
   const float back = std::min(height / std::max(cosine, kLeastCosine), hit.t);
   const glm::vec3 origin = position - back * ray.direction + (height - back * cosine) * geometric;
   return {position, geometric, shading_normal(hit, geometric, ray.direction),
-          look_of_[hit.instance]->base_color, origin};
+          appearance_of_[hit.instance]->base_color, origin};
 }
 
 float SurfaceTable::footprint(const Ray& ray, const Hit& hit, float spread) const {
   const float cosine = std::max(std::abs(glm::dot(hit.normal, ray.direction)), 1e-3f);
   const float width = spread * hit.t / cosine;
-  const float texels = look_of_[hit.instance]->triangles[hit.triangle].texels;
+  const float texels = appearance_of_[hit.instance]->triangles[hit.triangle].texels;
   return texels * width * width / geometry_->area_scale(hit.instance);
 }
 
 SurfacePoint SurfaceTable::guide_point(const Ray& ray, const Hit& hit, float spread) const {
   const glm::mat4& to_world = geometry_->transforms()[hit.instance];
   SurfacePoint p = point(ray, hit, position(hit, to_world));
-  const Look& look = *look_of_[hit.instance];
-  if (look.texture == nullptr) return p;
+  const Appearance& appearance = *appearance_of_[hit.instance];
+  if (appearance.texture == nullptr) return p;
   const float level = 0.5f * std::log2(std::max(footprint(ray, hit, spread), 1.0f));
-  p.albedo *= look.texture->trilinear(interpolate(look.triangles[hit.triangle].uv, hit), level);
+  p.albedo *=
+      appearance.texture->trilinear(interpolate(appearance.triangles[hit.triangle].uv, hit), level);
   return p;
 }
 
 SurfaceTable::BouncePoint SurfaceTable::bounce_point(const Ray& ray, const Hit& hit) const {
   BouncePoint p{point(ray, hit, ray.origin + hit.t * ray.direction)};
-  const Look& look = *look_of_[hit.instance];
-  if (look.texture == nullptr) return p;
+  const Appearance& appearance = *appearance_of_[hit.instance];
+  if (appearance.texture == nullptr) return p;
   const int level = std::ilogb(std::max(footprint(ray, hit, kBounceSpread), 1.0f)) / 2;
-  p.texel = &look.texture->nearest_texel(interpolate(look.triangles[hit.triangle].uv, hit), level);
+  p.texel = &appearance.texture->nearest_texel(
+      interpolate(appearance.triangles[hit.triangle].uv, hit), level);
   return p;
 }
 

@@ -41,13 +41,13 @@ class SurfaceTable {
   [[nodiscard]] BouncePoint bounce_point(const Ray& ray, const Hit& hit) const;
   /// Prefetches the memory that bounce_point() reads.
   void prefetch(const Hit& hit) const {
-    const auto& triangles = look_of_[hit.instance]->triangles;
+    const auto& triangles = appearance_of_[hit.instance]->triangles;
     if (!triangles.empty()) __builtin_prefetch(&triangles[hit.triangle]);
   }
 
   /// Material::emission of the triangle, before Lights::emissive_scale and emissive_tilt.
   [[nodiscard]] const glm::vec3& emission(const Hit& hit) const {
-    return look_of_[hit.instance]->emission;
+    return appearance_of_[hit.instance]->emission;
   }
   /// World position that the hit point of the triangle has under the transform `to_world`.
   [[nodiscard]] glm::vec3 position(const Hit& hit, const glm::mat4& to_world) const;
@@ -62,7 +62,7 @@ class SurfaceTable {
     std::array<glm::vec2, 3> uv;
     float texels = 0.0f;  // texels per unit of area in mesh space
   };
-  struct Look {
+  struct Appearance {
     const Mesh* mesh = nullptr;
     glm::vec3 base_color{0.0f};
     glm::vec3 emission{0.0f};
@@ -70,7 +70,8 @@ class SurfaceTable {
     bool smooth = false;                      // the mesh has vertex normals
     std::vector<Triangle> triangles;          // empty without vertex normals and texture
   };
-  [[nodiscard]] static Triangle make_triangle(const Look& look, const glm::uvec3& corners);
+  [[nodiscard]] static Triangle make_triangle(const Appearance& appearance,
+                                              const glm::uvec3& corners);
   [[nodiscard]] glm::vec3 shading_normal(const Hit& hit, const glm::vec3& geometric,
                                          const glm::vec3& view) const;
   [[nodiscard]] SurfacePoint point(const Ray& ray, const Hit& hit, const glm::vec3& position) const;
@@ -79,8 +80,8 @@ class SurfaceTable {
 
   const EmbreeScene* geometry_;
   std::vector<TexturePyramid> textures_;
-  std::vector<Look> looks_;           // per mesh
-  std::vector<const Look*> look_of_;  // per instance
+  std::vector<Appearance> appearances_;           // per mesh
+  std::vector<const Appearance*> appearance_of_;  // per instance
 };
 
 }  // namespace eigenlight

@@ -50,7 +50,7 @@ OpacityMap::Counts OpacityMap::count(const Span& x, const Span& y) const {
   return {d.solid - b.solid - c.solid + a.solid, d.hole - b.hole - c.hole + a.hole};
 }
 
-Opacity OpacityMap::between(const std::array<glm::vec2, 3>& uv) const {
+Opacity OpacityMap::classify(const std::array<glm::vec2, 3>& uv) const {
   for (const glm::vec2& corner : uv) {
     if (!std::isfinite(corner.x) || !std::isfinite(corner.y)) return Opacity::kMixed;
   }

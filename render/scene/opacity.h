@@ -22,7 +22,7 @@ class OpacityMap {
   OpacityMap(const Texture& texture, float cutoff);
 
   /// Opacity of the triangle with the texture coordinates `uv`. Conservative: kMixed in doubt.
-  [[nodiscard]] Opacity between(const std::array<glm::vec2, 3>& uv) const;
+  [[nodiscard]] Opacity classify(const std::array<glm::vec2, 3>& uv) const;
 
  private:
   struct Counts {

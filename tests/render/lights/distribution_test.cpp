@@ -18,7 +18,7 @@ TEST(Distribution, SamplesAreProportionalToWeights) {
   for (int i = 0; i < n; ++i) {
     const auto choice = d.sample((static_cast<float>(i) + 0.5f) / static_cast<float>(n));
     ++counts[choice.index];
-    EXPECT_FLOAT_EQ(choice.chance, weights[choice.index] / 8.0f);
+    EXPECT_FLOAT_EQ(choice.probability, weights[choice.index] / 8.0f);
     EXPECT_GE(choice.remainder, 0.0f);
     EXPECT_LT(choice.remainder, 1.0f);
     remainder += static_cast<double>(choice.remainder) / n;

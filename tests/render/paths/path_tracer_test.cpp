@@ -154,10 +154,10 @@ TEST(PathTracer, PathsTracedTogetherEqualPathsTracedAlone) {
     paths.emplace_back(point, Sampler(7, i));
   }
   std::int64_t rays = 0, rays_alone = 0;
-  tracer.lights[0].radiance(paths, rays);
+  tracer.indirect(paths, rays);
   bool any = false;
   for (std::uint32_t i = 0; i < paths.size(); ++i) {
-    const glm::vec3 alone = tracer.lights[0].radiance(point, Sampler(7, i), rays_alone);
+    const glm::vec3 alone = tracer.indirect(point, Sampler(7, i), rays_alone);
     EXPECT_EQ(paths[i].light, alone) << "path " << i;
     any = any || alone.x > 0.0f;
   }

@@ -36,7 +36,7 @@ TEST(OpacityMap, AllPointsOfATriangleHaveItsOpacity) {
     const glm::vec2 center(anywhere(random), anywhere(random));
     std::array<glm::vec2, 3> uv;
     for (glm::vec2& corner : uv) corner = center + glm::vec2(near(random), near(random));
-    const Opacity opacity = map.between(uv);
+    const Opacity opacity = map.classify(uv);
     ++count[static_cast<int>(opacity)];
     if (opacity == Opacity::kMixed) continue;
     for (int k = 0; k < 20; ++k) {
@@ -52,20 +52,20 @@ TEST(OpacityMap, AllPointsOfATriangleHaveItsOpacity) {
 TEST(OpacityMap, RepeatingTrianglesCoverTheWholeTexture) {
   Texture texture{"plain", {8, 8}, std::vector<std::uint8_t>(256, 255)};
   const std::array<glm::vec2, 3> wide{{{0, 0}, {7, 0}, {0, 5}}};
-  EXPECT_EQ(OpacityMap(texture, 0.5f).between(wide), Opacity::kSolid);
+  EXPECT_EQ(OpacityMap(texture, 0.5f).classify(wide), Opacity::kSolid);
   texture.rgba[4 * 63 + 3] = 0;
-  EXPECT_EQ(OpacityMap(texture, 0.5f).between(wide), Opacity::kMixed);
+  EXPECT_EQ(OpacityMap(texture, 0.5f).classify(wide), Opacity::kMixed);
   for (std::size_t i = 0; i < 64; ++i) texture.rgba[4 * i + 3] = 0;
-  EXPECT_EQ(OpacityMap(texture, 0.5f).between(wide), Opacity::kHole);
+  EXPECT_EQ(OpacityMap(texture, 0.5f).classify(wide), Opacity::kHole);
 }
 
 TEST(OpacityMap, NonFiniteCoordinatesGiveMixed) {
   const Texture texture = dotted({16, 16});
   const float nan = std::numeric_limits<float>::quiet_NaN();
   for (const float bad : {nan, std::numeric_limits<float>::infinity()}) {
-    EXPECT_EQ(OpacityMap(texture, 0.0f).between({{{0, bad}, {0, 0}, {0, 0}}}), Opacity::kMixed);
+    EXPECT_EQ(OpacityMap(texture, 0.0f).classify({{{0, bad}, {0, 0}, {0, 0}}}), Opacity::kMixed);
   }
-  EXPECT_NE(OpacityMap(texture, 0.5f).between({{{1e30f, 0}, {0, 1}, {0, 0}}}), Opacity::kSolid);
+  EXPECT_NE(OpacityMap(texture, 0.5f).classify({{{1e30f, 0}, {0, 1}, {0, 0}}}), Opacity::kSolid);
 }
 
 }  // namespace
