@@ -92,7 +92,7 @@ TEST(BuiltinScenes, ErrorListsTheKnownScenes) {
     (void)make_builtin_scene("sponza");
     FAIL() << "expected an exception";
   } catch (const std::invalid_argument& error) {
-    EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr("\"sponza\""),
+    EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr("'sponza'"),
                                              testing::HasSubstr("cornell, atrium, gallery")));
   }
 }

@@ -152,7 +152,7 @@ TEST(Flythrough, UnknownPerturbationListsTheKnownOnes) {
     (void)parse_perturbation("wind");
     FAIL() << "expected an exception";
   } catch (const std::invalid_argument& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("none, lights, objects, all, step or step:FRAME"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("none, lights, objects, all, step, step:FRAME"));
   }
 }
 
