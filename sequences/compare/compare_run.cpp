@@ -40,7 +40,7 @@ class LiveEntry {
  public:
   LiveEntry(const ComparePlan& plan, const CompareGroup& group, const Contender& contender)
       : method_(contender.method),
-        options_{plan.extent, plan.bases, {}},
+        options_{.extent = plan.extent, .bases = plan.bases},
         judge_(metric_options(group)) {
     cell_.contender = contender.label;
     cell_.spp = group.spp;
