@@ -11,11 +11,16 @@
 
 #include "sequences/cli/compare_options.h"
 #include "sequences/cli/compare_paper.h"
+#include "sequences/cli/markdown_option.h"
+#include "sequences/compare/antialias_run.h"
+#include "sequences/compare/compare_crops.h"
+#include "sequences/compare/compare_markdown.h"
 #include "sequences/compare/compare_page.h"
 #include "sequences/compare/compare_pictures.h"
 #include "sequences/compare/compare_run.h"
 #include "sequences/files/atomic_file.h"
 #include "sequences/files/file_pattern.h"
+#include "sequences/files/ldr_image.h"
 #include "sequences/runs/scene_source.h"
 
 namespace eigenlight {
@@ -23,6 +28,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
+
+constexpr int kCropQuality = 88;
 
 // Another build may measure other numbers.
 std::string program_hash() {
@@ -46,6 +53,7 @@ Json cell_identity(const ReferenceCache& references, const Contender& contender,
     json["command"] = contender.external->command;
     json["time"] = contender.external->time_pattern;
   }
+  if (contender.antialias) json["antialias"] = format_antialias(*contender.antialias);
   return json;
 }
 
@@ -61,7 +69,7 @@ struct OpenCase {
 class CompareJob {
  public:
   CompareJob(const CompareSettings& settings, const Job& job)
-      : job_(job), plan_(make_compare_plan(settings)) {}
+      : job_(job), markdown_(settings.markdown), plan_(make_compare_plan(settings)) {}
 
   int run() {
     const CellStore store(plan_.directory / "cells", shared_identity(plan_));
@@ -75,8 +83,10 @@ class CompareJob {
       for (const int spp : plan_.spp) {
         if (!measure({one, open, references, spp}, store, of_case)) return stopped();
       }
-      galleries.push_back(compare_gallery(
-          {plan_, references, plan_.directory / "frames" / one.name, open.scene.exposure}));
+      const ComparePictures pictures{plan_, references, plan_.directory / "frames" / one.name,
+                                     open.scene.exposure};
+      galleries.push_back(compare_gallery(pictures));
+      if (plan_.crop) write_crops(one, pictures);
       results.push_back(std::move(of_case));
     }
     write(results, std::move(galleries));
@@ -104,6 +114,7 @@ class CompareJob {
   [[nodiscard]] bool measure(const Task& task, const CellStore& store, CaseResults& results) const;
   [[nodiscard]] bool measure_missing(const Task& task, const std::vector<const Contender*>& missing,
                                      const CellStore& store) const;
+  void write_crops(const CompareCase& one, const ComparePictures& pictures) const;
   void write(const std::vector<CaseResults>& results, std::vector<PageGallery> galleries) const;
   [[nodiscard]] int stopped() const {
     job_.say(
@@ -112,6 +123,7 @@ class CompareJob {
   }
 
   const Job& job_;
+  std::string markdown_;  // as add_markdown_option() leaves it
   ComparePlan plan_;
 };
 
@@ -131,7 +143,8 @@ ReferenceIdentity CompareJob::identity_of(const CompareCase& one, const OpenCase
   RenderOptions options;
   options.extent = plan_.extent;
   options.bounces = plan_.bounces;
-  identity.renderer = renderer_hash(open.animated(), options);
+  if (plan_.is_antialiasing()) identity.antialias = kAntialiasReference;
+  identity.renderer = renderer_hash(open.animated(), options, identity.antialias);
   return identity;
 }
 
@@ -188,12 +201,20 @@ bool CompareJob::measure_missing(const Task& task, const std::vector<const Conte
   const CompareGroup group{task.open.animated(),       task.references, task.spp,
                            task.open.scene.exposure,   missing,         pictures_of(task),
                            plan_.directory / "scratch"};
-  const auto cells = run_group(plan_, group, control(progress));
+  const auto run = plan_.is_antialiasing() ? run_antialias_group : run_group;
+  const auto cells = run(plan_, group, control(progress));
   if (!cells) return false;
   for (std::size_t i = 0; i < missing.size(); ++i) {
     store.save(cell_identity(task.references, *missing[i], task.spp), (*cells)[i]);
   }
   return true;
+}
+
+void CompareJob::write_crops(const CompareCase& one, const ComparePictures& pictures) const {
+  const fs::path path = plan_.directory / fmt::format("crops-{}.jpg", one.name);
+  const std::vector<unsigned char> jpeg = encode_jpeg(crop_rows(pictures), kCropQuality);
+  write_file_atomically(path, {reinterpret_cast<const char*>(jpeg.data()), jpeg.size()});
+  job_.say(fmt::format("{}: {}", path.string(), crop_names(plan_)));
 }
 
 void CompareJob::write(const std::vector<CaseResults>& results,
@@ -203,8 +224,11 @@ void CompareJob::write(const std::vector<CaseResults>& results,
   write_file_atomically(plan_.directory / "results.csv", to_csv(results));
   write_file_atomically(plan_.directory / "index.html",
                         to_html(compare_page(plan_, results, std::move(galleries))));
-  job_.print_results(json, fmt::format("{}\n{}\n", to_table(plan_, results),
-                                       (plan_.directory / "index.html").string()));
+  const std::string markdown = to_markdown(plan_, results);
+  write_markdown(markdown_, markdown);
+  const std::string table =
+      fmt::format("{}\n{}\n", to_table(plan_, results), (plan_.directory / "index.html").string());
+  job_.print_results(json, is_printed(markdown_) ? markdown : table);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@ namespace eigenlight {
 ///   index.html    the page (compare_page.h)
 ///   results.json  all results (compare_results.h)
 ///   results.csv   a line for each scene, method and sample count
+///   crops-SCENE.jpg  one crop of each method (compare_crops.h), with --crop
 ///   frames/       the measured frames, SCENE/METHOD/frame.####.exr, at the sample count shown
 ///   cells/        results so far, each under the hash of all that decides it, the program included
 /// With --paper it reruns a paper instead (compare_paper.h). Throws std::invalid_argument for a bad

@@ -4,13 +4,16 @@
 #include <set>
 #include <string>
 
+#include "sequences/cli/markdown_option.h"
 #include "sequences/lab/paper.h"
 
 namespace eigenlight {
 namespace {
 
 void add_what(CLI::App& command, CompareSettings& settings) {
-  command.add_option("scenes", settings.scenes, "Built-in names, scene.json, .gltf, .glb or .obj");
+  command.add_option("scenes", settings.scenes,
+                     "Built-in names, scene.json, .gltf, .glb or .obj; SCENE:PERTURB with commas "
+                     "names what moves in that scene");
   command.add_option("-o,--output", settings.directory, "Directory for results and page")
       ->required();
   command.add_option("--methods", settings.methods, "With commas [all of `eigenlight methods`]");
@@ -26,8 +29,13 @@ void add_what(CLI::App& command, CompareSettings& settings) {
       ->allow_extra_args(false);
   command.add_flag("--ablate", settings.ablate,
                    "Also our method without each of its parts; see `eigenlight methods --parts`");
-  command.add_option("--perturb", settings.perturb, "What moves, with commas: none, lights, ...")
+  command
+      .add_option("--perturb", settings.perturb,
+                  "What moves, with commas: none, lights, ...; of scenes that do not say it")
       ->capture_default_str();
+  command.add_option("--aa", settings.antialias,
+                     "In place of methods: ways of antialiasing, with commas, as in `render --aa` "
+                     "[--spp 24 --frames 20 --warmup 1 --reference-spp 512]");
   command.add_option("--spp", settings.spp, "Sample counts, with commas")->capture_default_str();
   command.add_flag("--environment", settings.environment,
                    "Environment map of a scene.json in place of its suns and sky");
@@ -50,6 +58,11 @@ void add_how(CLI::App& command, CompareSettings& settings) {
   command.add_option(
       "--equal-time", settings.equal_time,
       "Milliseconds a frame at which errors are compared [ours at the lowest --spp]");
+  command.add_option("--crop", settings.crop,
+                     "WIDTHxHEIGHT+X+Y: write crops-SCENE.jpg with this crop of every method");
+  command.add_option("--crops-per-row", settings.crops_per_row, "0: all in one row")
+      ->capture_default_str();
+  add_markdown_option(command, settings.markdown);
 }
 
 // Papers come with scenes, methods and sample counts of their own.
@@ -58,19 +71,37 @@ void add_paper(CLI::App& command, CompareSettings& settings) {
       command.add_option("--paper", settings.paper,
                          "In place of scenes: measure again what a paper claims; " + paper_names());
   for (CLI::Option* other : command.get_options()) {
-    static const std::set<std::string> kShared{"--help",   "--paper",   "--output", "--size",
-                                               "--frames", "--threads", "--quiet",  "--json"};
+    static const std::set<std::string> kShared{"--help",  "--paper",  "--output",
+                                               "--size",  "--frames", "--threads",
+                                               "--quiet", "--json",   "--markdown"};
     const std::string name = other->get_name();
     if (!kShared.contains(name)) paper->excludes(other);
   }
-  command.parse_complete_callback([&command, &settings] {
-    if (settings.paper.empty()) {
-      if (settings.scenes.empty()) throw CLI::RequiredError("scenes or --paper");
-      return;
-    }
-    if (command.get_option("--size")->count() == 0) settings.size.clear();
-    if (command.get_option("--frames")->count() == 0) settings.frames.clear();
-  });
+}
+
+// Antialiasing is measured on single frames of many samples.
+void add_antialias(CLI::App& command) {
+  CLI::Option* antialias = command.get_option("--aa");
+  for (const char* other :
+       {"--methods", "--external", "--external-time", "--ablate", "--equal-time"}) {
+    antialias->excludes(command.get_option(other));
+  }
+}
+
+// Defaults that depend on what is compared.
+void set_defaults(const CLI::App& command, CompareSettings& settings) {
+  const auto is_given = [&](const char* option) { return command.get_option(option)->count() > 0; };
+  if (!settings.paper.empty()) {
+    if (!is_given("--size")) settings.size.clear();
+    if (!is_given("--frames")) settings.frames.clear();
+    return;
+  }
+  if (settings.scenes.empty()) throw CLI::RequiredError("scenes or --paper");
+  if (settings.antialias.empty()) return;
+  if (!is_given("--spp")) settings.spp = "24";
+  if (!is_given("--frames")) settings.frames = "20";
+  if (!is_given("--warmup")) settings.warmup = 1;
+  if (!is_given("--reference-spp")) settings.reference_spp = 512;
 }
 
 }  // namespace
@@ -80,6 +111,9 @@ void add_compare_options(CLI::App& command, CompareOptions& options) {
   add_how(command, options.settings);
   add_job_options(command, options.job, "Print results.json instead of the table");
   add_paper(command, options.settings);
+  add_antialias(command);
+  command.parse_complete_callback(
+      [&command, &options] { set_defaults(command, options.settings); });
 }
 
 }  // namespace eigenlight

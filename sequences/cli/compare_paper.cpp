@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "sequences/cli/markdown_option.h"
 #include "sequences/files/atomic_file.h"
 #include "sequences/files/frame_range.h"
 #include "sequences/lab/paper.h"
@@ -57,7 +58,11 @@ int compare_paper(const CompareSettings& settings, const Job& job) {
   const fs::path page = directory / "index.html";
   write_file_atomically(directory / "results.json", json);
   write_file_atomically(page, to_html(paper_page(paper, run, report)));
-  job.print_results(json, fmt::format("{}\n{}\n", to_markdown(paper, report), page.string()));
+  const std::string markdown = to_markdown(paper, run, report);
+  write_markdown(settings.markdown, markdown);
+  job.print_results(json, is_printed(settings.markdown)
+                              ? markdown
+                              : fmt::format("{}\n{}\n", markdown, page.string()));
   return kSuccess;
 }
 

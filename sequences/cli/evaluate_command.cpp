@@ -77,8 +77,14 @@ std::string to_table(const Evaluation& evaluation) {
     for (const Figures& set : evaluation.mean) text += cell(set.values[m]);
     text += '\n';
   }
+  text += fmt::format("{:<24}", "energy");
+  for (const Figures& set : evaluation.mean) text += cell(set.energy());
+  text += '\n';
   text += '\n' + lag_lines(evaluation);
-  text += fmt::format("young: fewer than {} frames of history; - not measured\n", kYoungAge);
+  text += fmt::format(
+      "energy: light / reference_light; young: fewer than {} frames of history; - "
+      "not measured\n",
+      kYoungAge);
   text += evaluation.metrics.is_display
               ? std::string("values of 8-bit pictures as stored\n")
               : fmt::format("psnr, ssim, ms_ssim, tpsnr: of sRGB(clamp({} * value, 0, 1))\n",

@@ -26,7 +26,7 @@ std::string row(const PyramidJudgement& j) {
   const auto better = [](double a, double b, const std::string& text) {
     return a > b ? "**" + text + "**" : text;
   };
-  const auto cell = [&](const Likeness& a, const Likeness& b) {
+  const auto cell = [&](const Similarity& a, const Similarity& b) {
     return better(a.psnr, b.psnr, fmt::format("{:.2f} dB", a.psnr)) + ", " +
            better(a.ssim, b.ssim, fmt::format("{:.4f}", a.ssim));
   };

@@ -7,7 +7,8 @@ namespace eigenlight {
 
 /// Runs the cases (stress/stress_case.h) and prints a table, or with --json
 ///   {"cases": [{"name", "frames", "figure", "bound", "pass", "seconds", "what", "where"}, ..]}
-/// (a figure that is not finite is null). A failing case is run again to record its worst frame in
+/// (a figure that is not finite is null). --markdown FILE also writes the table to a file, below a
+/// head with date, version and machine. A failing case is run again to record its worst frame in
 /// a directory named after the case: the pictures of the frame before and of the worst frame
 /// (before.exr, frame.exr), and the history that the worst frame met (state.bin). The command that
 /// repeats the case is printed. Exit status kFailed if any case failed. Throws

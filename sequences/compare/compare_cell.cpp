@@ -25,6 +25,11 @@ Json to_json(const Cell& cell) {
       {"extra_spp", cell.extra_spp},
       {"memory_mb", cell.memory_mb},
       {"bad_pixels", cell.bad_pixels}};
+  if (cell.antialias) {
+    json["antialias"] = {{"cpu_ms", cell.antialias->ms},
+                         {"reference_cpu_ms", cell.antialias->reference_ms},
+                         {"unmatched", cell.antialias->unmatched}};
+  }
   json.update(to_json(cell.mean()));
   json["per_frame"] = Json::array();
   for (const FrameFigures& frame : cell.frames) json["per_frame"].push_back(to_json(frame));
@@ -40,6 +45,10 @@ Cell cell_from_json(const Json& json) {
   cell.extra_spp = json.at("extra_spp").get<double>();
   cell.memory_mb = json.at("memory_mb").get<double>();
   cell.bad_pixels = json.at("bad_pixels").get<std::int64_t>();
+  if (const auto cost = json.find("antialias"); cost != json.end()) {
+    cell.antialias = {cost->at("cpu_ms").get<double>(), cost->at("reference_cpu_ms").get<double>(),
+                      cost->at("unmatched").get<double>()};
+  }
   for (const Json& frame : json.at("per_frame")) {
     cell.frames.push_back(frame_figures_from_json(frame));
   }

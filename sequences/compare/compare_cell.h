@@ -12,18 +12,28 @@
 
 namespace eigenlight {
 
+/// What antialiasing costs a frame, means over the measured frames.
+struct AntialiasCost {
+  double ms = 0.0;            ///< CPU time of antialiasing the denoised frame
+  double reference_ms = 0.0;  ///< the same of kAntialiasReference
+  double unmatched = 0.0;     ///< path-traced eye rays over four times the surface pixels
+};
+
 struct Cell {
   std::string contender;  ///< its label
   int spp = 0;
   std::vector<FrameFigures> frames;  ///< the measured ones
-  /// CPU milliseconds a frame, means over the measured frames: rendering, with the further samples
+  /// CPU milliseconds a frame, means over the measured frames: rendering, with the extra samples
   /// that the method asked for, and the method itself.
   double render_ms = 0.0, denoise_ms = 0.0;
-  double extra_spp = 0.0;       ///< further samples per surface pixel, mean
-  double memory_mb = 0.0;       ///< 10^6 bytes; of what: kMemoryNote
-  std::int64_t bad_pixels = 0;  ///< of the method, with NaN or Inf: excluded
+  std::optional<AntialiasCost> antialias;  ///< of ways of antialiasing
+  double extra_spp = 0.0;                  ///< extra samples per surface pixel, mean
+  double memory_mb = 0.0;                  ///< 10^6 bytes; of what: kMemoryNote
+  std::int64_t bad_pixels = 0;             ///< of the method, with NaN or Inf: excluded
 
-  [[nodiscard]] double total_ms() const { return render_ms + denoise_ms; }
+  [[nodiscard]] double total_ms() const {
+    return render_ms + denoise_ms + (antialias ? antialias->ms : 0.0);
+  }
   [[nodiscard]] SetFigures mean() const { return mean_figures(frames); }
 };
 
@@ -32,8 +42,9 @@ inline constexpr const char* kMemoryNote =
     "frame "
     "included; programs: largest resident set";
 
-/// `contender`, `spp`, `cpu_ms` {render, denoise, total}, `extra_spp`, `memory_mb`, `bad_pixels`,
-/// the means of to_json(SetFigures), and `per_frame`.
+/// `contender`, `spp`, `cpu_ms` {render, denoise, total}, `antialias` {cpu_ms, reference_cpu_ms,
+/// unmatched} where there is one, `extra_spp`, `memory_mb`, `bad_pixels`, the means of
+/// to_json(SetFigures), and `per_frame`.
 [[nodiscard]] nlohmann::ordered_json to_json(const Cell& cell);
 /// Throws nlohmann::json::exception on anything that to_json(Cell) did not write.
 [[nodiscard]] Cell cell_from_json(const nlohmann::ordered_json& json);

@@ -6,6 +6,7 @@
 
 #include "frame/check.h"
 #include "sequences/files/frame_range.h"
+#include "sequences/files/machine.h"
 #include "sequences/files/version.h"
 #include "sequences/metrics/equal_time.h"
 
@@ -70,20 +71,22 @@ PageTable empty_figures_table(const ComparePlan& plan, double equal_ms) {
   using Best = TableColumn::Best;
   return {fmt::format("{} spp, means over frames {}", plan.shown_spp(),
                       format_frame_range(plan.measured)),
-          fmt::format("The best value of a column is bold. Young pixels have fewer than {} frames "
+          fmt::format("The best value of a column is bold. Energy is the mean of the output over "
+                      "the mean of the reference. Young pixels have fewer than {} frames "
                       "of history. Times are CPU times a frame; the time of rendering includes the "
                       "extra samples that a method asks for. The error at equal time is "
                       "interpolated between measured points and never extrapolated. Memory: {}.",
                       kYoungAge, kMemoryNote),
           "method",
           {{"relMSE", Best::kLowest},
+           {"energy"},
            {"temporal error", Best::kLowest},
            {"PSNR, dB", Best::kHighest},
            {"SSIM", Best::kHighest},
            {"relMSE, young", Best::kLowest},
            {"relMSE, old", Best::kLowest},
            {"render, ms", Best::kLowest},
-           {"denoise, ms", Best::kLowest},
+           {plan.is_antialiasing() ? "antialias, ms" : "denoise, ms", Best::kLowest},
            {"extra spp"},
            {"memory, MB"},
            {fmt::format("relMSE at {:.4g} ms", equal_ms), Best::kLowest}},
@@ -96,12 +99,13 @@ PageTable figures_table(const ComparePlan& plan, const CaseResults& results) {
   for (const Contender& contender : plan.contenders) {
     const Cell& cell = *results.find(contender.label, plan.shown_spp());
     const auto all = [&](Metric m) { return cell_of(figure(cell, PixelSet::kSurface, m)); };
-    table.rows.push_back(
-        {contender.label,
-         {all(Metric::kRelmse), all(Metric::kTemporalError), all(Metric::kPsnr), all(Metric::kSsim),
-          cell_of(figure(cell, PixelSet::kYoung, Metric::kRelmse)),
-          cell_of(figure(cell, PixelSet::kOld, Metric::kRelmse)), cell.render_ms, cell.denoise_ms,
-          cell.extra_spp, cell.memory_mb, cell_of(equal.relmse.at(contender.label))}});
+    table.rows.push_back({contender.label,
+                          {all(Metric::kRelmse), cell_of(cell.mean()[0].energy()),
+                           all(Metric::kTemporalError), all(Metric::kPsnr), all(Metric::kSsim),
+                           cell_of(figure(cell, PixelSet::kYoung, Metric::kRelmse)),
+                           cell_of(figure(cell, PixelSet::kOld, Metric::kRelmse)), cell.render_ms,
+                           cell.antialias ? cell.antialias->ms : cell.denoise_ms, cell.extra_spp,
+                           cell.memory_mb, cell_of(equal.relmse.at(contender.label))}});
   }
   return table;
 }
@@ -112,17 +116,20 @@ TableCell ratio(const TableCell& of, const TableCell& to) {
   return a && b && *b > 0.0 ? TableCell(*a / *b) : TableCell();
 }
 
-// The figures of `cell`, each followed by its ratio to the figure of `whole`.
+// The figures of `cell`, those that have a ratio followed by that to the figure of `whole`.
 TableRow ablation_row(const std::string& label, const Cell& cell, const Cell& whole) {
   TableRow row{label, {}};
   const auto add = [&](const TableCell& value, const TableCell& of_whole) {
     row.cells.push_back(value);
     row.cells.push_back(ratio(value, of_whole));
   };
-  for (const Metric m : {Metric::kRelmse, Metric::kTemporalError}) {
+  const auto add_figure = [&](Metric m) {
     add(cell_of(figure(cell, PixelSet::kSurface, m)),
         cell_of(figure(whole, PixelSet::kSurface, m)));
-  }
+  };
+  add_figure(Metric::kRelmse);
+  row.cells.push_back(cell_of(cell.mean()[0].energy()));
+  add_figure(Metric::kTemporalError);
   add(cell.render_ms, whole.render_ms);
   add(cell.denoise_ms, whole.denoise_ms);
   return row;
@@ -137,6 +144,7 @@ void add_ablation(const ComparePlan& plan, const CaseResults& results, PageSecti
       "method",
       {{"relMSE"},
        {"factor"},
+       {"energy"},
        {"temporal error"},
        {"factor"},
        {"render, ms"},
@@ -174,13 +182,15 @@ Page compare_page(const ComparePlan& plan, const std::vector<CaseResults>& resul
   EL_CHECK(galleries.size() == results.size(), "{} galleries for {} scenes", galleries.size(),
            results.size());
   Page page;
-  page.title = "Denoisers compared: error against run time";
+  page.title = plan.is_antialiasing() ? "Antialiasing compared: error against run time"
+                                      : "Denoisers compared: error against run time";
   page.subtitle = fmt::format(
-      "{} × {} pixels, frames {} after {} frames of history. The error is that of indirect light "
-      "times albedo against two independent references of {} samples a pixel each; their own "
-      "noise cancels out.",
+      "{} × {} pixels, frames {} after {} frames of history. The error is that of {} against two "
+      "independent references of {} samples a pixel each; their own noise cancels out.",
       plan.extent.width, plan.extent.height, format_frame_range(plan.measured),
-      plan.frames.size() - plan.measured.size(), plan.reference_spp);
+      plan.frames.size() - plan.measured.size(),
+      plan.is_antialiasing() ? "the composed picture" : "indirect light times albedo",
+      plan.reference_spp);
   for (const Contender& contender : plan.contenders) page.names.push_back(contender.label);
   for (std::size_t i = 0; i < results.size(); ++i) {
     PageSection section{results[i].scene.name, results[i].title, {}, {}, {}};

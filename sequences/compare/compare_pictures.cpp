@@ -150,9 +150,10 @@ class GalleryMaker {
     const std::string low = fmt::format("{}", kLow), high = fmt::format("{}", kHigh);
     return {
         {"crop",
-         fmt::format("Indirect light times albedo in the square where {} has most error: columns "
-                     "{} to {}, rows {} to {}",
-                     in_.plan.ours().label, crop_.x0, crop_.x1 - 1, crop_.y0, crop_.y1 - 1)},
+         fmt::format(
+             "{} in the square where {} has most error: columns {} to {}, rows {} to {}",
+             in_.plan.is_antialiasing() ? "The composed picture" : "Indirect light times albedo",
+             in_.plan.ours().label, crop_.x0, crop_.x1 - 1, crop_.y0, crop_.y1 - 1)},
         {"error",
          "Root of the relMSE of each pixel against the reference, including the noise of the "
          "reference",
@@ -160,24 +161,8 @@ class GalleryMaker {
         {"change of error", "The same for the change of the error since the previous frame",
          ramp_css(), low, high}};
   }
-  [[nodiscard]] Planes<3> reference(int frame) const {
-    Planes<3> mean = in_.references.load(ReferenceCache::Half::kA, frame);
-    const Planes<3> other = in_.references.load(ReferenceCache::Half::kB, frame);
-    for (std::size_t c = 0; c < 3; ++c) {
-      for (int y = 0; y < mean[c].height(); ++y) {
-        for (int x = 0; x < mean[c].width(); ++x) {
-          mean[c](x, y) = 0.5f * (mean[c](x, y) + other[c](x, y));
-        }
-      }
-    }
-    return mean;
-  }
-  [[nodiscard]] Planes<3> output(const Contender& contender, int frame) const {
-    const ExrReader reader(in_.folder / contender.label / FilePattern(kFramePattern).name(frame));
-    return reader.read_planes<3>(contender.external ? "" : "indirect");
-  }
   [[nodiscard]] Planes<3> error(const Contender& contender, int frame) const {
-    return relative_error(output(contender, frame), reference(frame));
+    return relative_error(in_.output(contender, frame), in_.reference(frame));
   }
   // Neighboring squares overlap by half, so that no fault is cut in two by all of them.
   [[nodiscard]] Tile find_crop() const {
@@ -201,14 +186,14 @@ class GalleryMaker {
     return {name, std::vector<std::vector<std::string>>(3)};
   }
   void add_frame(int frame, std::vector<GalleryTile>& tiles) {
-    const Planes<3> truth = reference(frame);
+    const Planes<3> mean = in_.reference(frame);
     // The error of A against the mean of A and B is as large as the error of that mean: it shows
     // the least error that the other heat maps can show.
     const Planes<3> half = in_.references.load(ReferenceCache::Half::kA, frame);
-    add_picture(frame, truth, relative_error(half, truth), tiles[0], previous_[0]);
+    add_picture(frame, mean, relative_error(half, mean), tiles[0], previous_[0]);
     for (std::size_t i = 0; i < in_.plan.contenders.size(); ++i) {
-      const Planes<3> image = output(in_.plan.contenders[i], frame);
-      add_picture(frame, image, relative_error(image, truth), tiles[i + 1], previous_[i + 1]);
+      const Planes<3> image = in_.output(in_.plan.contenders[i], frame);
+      add_picture(frame, image, relative_error(image, mean), tiles[i + 1], previous_[i + 1]);
     }
   }
   // `before` is the error of the previous frame. The first frame has none: its change is black.
@@ -232,6 +217,24 @@ class GalleryMaker {
 };
 
 }  // namespace
+
+Planes<3> ComparePictures::reference(int frame) const {
+  Planes<3> mean = references.load(ReferenceCache::Half::kA, frame);
+  const Planes<3> other = references.load(ReferenceCache::Half::kB, frame);
+  for (std::size_t c = 0; c < 3; ++c) {
+    for (int y = 0; y < mean[c].height(); ++y) {
+      for (int x = 0; x < mean[c].width(); ++x) {
+        mean[c](x, y) = 0.5f * (mean[c](x, y) + other[c](x, y));
+      }
+    }
+  }
+  return mean;
+}
+
+Planes<3> ComparePictures::output(const Contender& contender, int frame) const {
+  const ExrReader reader(folder / contender.label / FilePattern(kFramePattern).name(frame));
+  return reader.read_planes<3>(contender.external || contender.antialias ? "" : "indirect");
+}
 
 PageGallery compare_gallery(const ComparePictures& pictures) {
   return GalleryMaker(pictures).make();

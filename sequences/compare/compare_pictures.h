@@ -9,11 +9,18 @@
 
 namespace eigenlight {
 
+/// The measured frames of one scene at plan.shown_spp(), read back from their files.
 struct ComparePictures {
   const ComparePlan& plan;
   const ReferenceCache& references;
   std::filesystem::path folder;  ///< as CompareGroup::pictures
   float exposure = 1.0f;
+
+  /// The mean of both references. Throws std::runtime_error naming a file that cannot be read; so
+  /// does output().
+  [[nodiscard]] Planes<3> reference(int frame) const;
+  /// What a contender made of the frame.
+  [[nodiscard]] Planes<3> output(const Contender& contender, int frame) const;
 };
 
 /// One tile for the reference (the mean of both references) and one for each contender, with three

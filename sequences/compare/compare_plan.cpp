@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
+#include <regex>
 #include <set>
 
 #include "frame/check.h"
@@ -39,12 +40,25 @@ std::string scene_word(const std::string& scene) {
   return as_word(path.stem().string());
 }
 
+struct SceneText {
+  std::string scene, perturb;
+};
+
+// `atrium:none,lights` names its own perturbations, unless there is a file of that name.
+SceneText split_scene(const std::string& text, const std::string& perturb) {
+  const std::size_t colon = text.find(':');
+  if (colon == std::string::npos || std::filesystem::exists(text)) return {text, perturb};
+  return {text.substr(0, colon), text.substr(colon + 1)};
+}
+
 std::vector<CompareCase> make_cases(const CompareSettings& settings) {
   EL_CHECK(!settings.scenes.empty(), "no scene to compare on");
   std::vector<CompareCase> cases;
   std::set<std::string> names;
-  for (const std::string& scene : settings.scenes) {
-    for (const std::string& perturb : split_list("perturb", settings.perturb)) {
+  for (const std::string& text : settings.scenes) {
+    const auto [scene, perturbs] = split_scene(text, settings.perturb);
+    EL_CHECK(!perturbs.empty(), "scene '{}': no perturbation, expected names with commas", text);
+    for (const std::string& perturb : split_list("perturb", perturbs)) {
       const Perturbation perturbation = parse_perturbation(perturb);
       CompareCase one{scene_word(scene), scene, format_perturbation(perturbation), perturbation};
       if (perturb != "none") one.name += fmt::format("-{}", as_word(one.perturb));
@@ -53,7 +67,6 @@ std::vector<CompareCase> make_cases(const CompareSettings& settings) {
       cases.push_back(std::move(one));
     }
   }
-  EL_CHECK(!cases.empty(), "perturb '': expected names with commas");
   return cases;
 }
 
@@ -100,7 +113,16 @@ void add_externals(const CompareSettings& settings, std::vector<Contender>& cont
   }
 }
 
+std::vector<Contender> make_antialiasing(const std::string& list) {
+  std::vector<Contender> contenders;
+  for (const std::string& mode : split_list("aa", list)) {
+    contenders.push_back({as_word(mode), "", "", {}, parse_antialias(mode)});
+  }
+  return contenders;
+}
+
 std::vector<Contender> make_contenders(const CompareSettings& settings) {
+  if (!settings.antialias.empty()) return make_antialiasing(settings.antialias);
   std::vector<Contender> contenders;
   std::vector<std::string> names = split_list("methods", settings.methods);
   if (names.empty() && !settings.ablate) {
@@ -125,6 +147,32 @@ void set_frames(const CompareSettings& settings, ComparePlan& plan) {
   for (int frame = first; frame <= plan.measured.back(); ++frame) plan.frames.push_back(frame);
 }
 
+// As ImageMagick writes it: 120x96+180+90.
+std::optional<CropPlan> make_crop(const CompareSettings& settings, Extent extent) {
+  check_range("crops-per-row", settings.crops_per_row, 0, 1000);
+  if (settings.crop.empty()) return std::nullopt;
+  static const std::regex kGeometry(R"((\d{1,5}x\d{1,5})\+(\d{1,5})\+(\d{1,5}))");
+  std::smatch match;
+  EL_CHECK(std::regex_match(settings.crop, match, kGeometry),
+           "crop '{}': expected WIDTHxHEIGHT+X+Y, such as 120x96+180+90", settings.crop);
+  const CropPlan crop{std::stoi(match[2]), std::stoi(match[3]), parse_size(match[1].str()),
+                      settings.crops_per_row};
+  EL_CHECK(crop.x + crop.size.width <= extent.width && crop.y + crop.size.height <= extent.height,
+           "crop '{}': reaches beyond the picture of {}x{}", settings.crop, extent.width,
+           extent.height);
+  return crop;
+}
+
+// References spread their samples over the places of kAntialiasReference; of the guide rays there
+// is one sample count.
+void check_antialiasing(const ComparePlan& plan) {
+  if (!plan.is_antialiasing()) return;
+  EL_CHECK(plan.spp.size() == 1, "spp: {} numbers, expected one with --aa", plan.spp.size());
+  EL_CHECK(plan.reference_spp % kAntialiasReference.samples == 0,
+           "reference-spp {}: expected a multiple of {} with --aa", 2 * plan.reference_spp,
+           2 * kAntialiasReference.samples);
+}
+
 }  // namespace
 
 int ComparePlan::shown_spp() const {
@@ -140,6 +188,17 @@ const Contender& ComparePlan::ours() const {
                    [](const Contender& contender) { return contender.label == kDefaultMethod; });
   return found == contenders.end() ? contenders.front() : *found;
 }
+
+const Contender* ComparePlan::baseline() const {
+  for (const Contender& contender : contenders) {
+    const bool is_raw = contender.antialias ? contender.antialias->mode == AntialiasMode::kNone
+                                            : contender.method == "noisy";
+    if (is_raw) return &contender;
+  }
+  return nullptr;
+}
+
+bool ComparePlan::is_antialiasing() const { return contenders.front().antialias.has_value(); }
 
 ComparePlan make_compare_plan(const CompareSettings& settings) {
   ComparePlan plan;
@@ -166,8 +225,10 @@ ComparePlan make_compare_plan(const CompareSettings& settings) {
   plan.environment = settings.environment;
   plan.reference_spp = settings.reference_spp / 2;
   plan.equal_time = settings.equal_time;
+  plan.crop = make_crop(settings, plan.extent);
   plan.cache = settings.cache;
   plan.directory = settings.directory;
+  check_antialiasing(plan);
   return plan;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "frame/plane.h"
+#include "render/antialias/options.h"
 #include "sequences/compare/external_method.h"
 #include "sequences/runs/flythrough.h"
 
@@ -15,8 +16,8 @@ namespace eigenlight {
 
 /// As a user gives it.
 struct CompareSettings {
-  std::vector<std::string> scenes;
-  std::string methods;  ///< with commas; empty: all
+  std::vector<std::string> scenes;  ///< SCENE, or SCENE:PERTURB with commas in place of `perturb`
+  std::string methods;              ///< with commas; empty: all
   std::string spp = "1,2,3,4,8,16";
   std::string frames = "40-59";
   int warmup = 40;
@@ -24,23 +25,29 @@ struct CompareSettings {
   int bases = 3;
   int bounces = 3;
   std::int64_t seed = 0;
-  std::string perturb = "none";  ///< with commas
+  std::string perturb = "none";  ///< with commas; of scenes that do not name their own
   bool environment = false;
   int reference_spp = 1024;
   std::string cache = "out/references";
   std::vector<std::string> external, external_time;
   std::optional<double> equal_time;  ///< ms a frame
   bool ablate = false;
-  std::string paper;  ///< not empty: rerun it; `size` and `frames` are then empty if not given
+  std::string antialias;  ///< with commas; not empty: compare these ways of antialiasing
+  std::string crop;       ///< WIDTHxHEIGHT+X+Y; empty: no picture of crops
+  int crops_per_row = 0;  ///< 0: all in one row
+  std::string markdown;   ///< file for the tables, `-` for standard output; empty: none
+  std::string paper;      ///< not empty: rerun it; `size` and `frames` are then empty if not given
   std::string directory;
 };
 
-/// One column of the comparison: a method of ours, perhaps without one of its parts, or a program.
+/// One column of the comparison: a method of ours, perhaps without one of its parts, a program, or
+/// a way of antialiasing.
 struct Contender {
   std::string label;  ///< unique, can be part of a file name
   std::string method;
   std::string without;  ///< a part that is off, or empty
   std::optional<ExternalMethod> external;
+  std::optional<AntialiasOptions> antialias = std::nullopt;
 };
 
 /// One scene under one perturbation.
@@ -49,6 +56,13 @@ struct CompareCase {
   std::string scene;  ///< as given
   std::string perturb;
   Perturbation perturbation = Perturbation::kNone;
+};
+
+/// A rectangle of the picture, and how many of its crops stand in a row.
+struct CropPlan {
+  int x = 0, y = 0;
+  Extent size;
+  int per_row = 0;  ///< 0: all
 };
 
 struct ComparePlan {
@@ -63,6 +77,7 @@ struct ComparePlan {
   bool environment = false;
   int reference_spp = 0;  ///< of each of the two references
   std::optional<double> equal_time;
+  std::optional<CropPlan> crop;
   std::filesystem::path cache, directory;
 
   /// The sample count that pictures and tables are of: 3, the default of `eigenlight render`, else
@@ -70,7 +85,15 @@ struct ComparePlan {
   [[nodiscard]] int shown_spp() const;
   /// The contender that others are measured by: `eigenlight`, else the first.
   [[nodiscard]] const Contender& ours() const;
+  /// The contender whose errors others are given as multiples of: `noisy`, or no antialiasing. Null
+  /// if it is not compared.
+  [[nodiscard]] const Contender* baseline() const;
+  /// Whether contenders are ways of antialiasing, measured on the composed picture.
+  [[nodiscard]] bool is_antialiasing() const;
 };
+
+/// The reference of antialiased pictures: supersampling at 16 places of each pixel.
+inline constexpr AntialiasOptions kAntialiasReference{AntialiasMode::kSupersample, 16};
 
 /// Throws std::invalid_argument naming the option, what was given and what was expected.
 [[nodiscard]] ComparePlan make_compare_plan(const CompareSettings& settings);

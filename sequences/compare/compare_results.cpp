@@ -3,11 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "sequences/files/frame_range.h"
+#include "sequences/files/machine.h"
 #include "sequences/files/version.h"
 #include "sequences/metrics/equal_time.h"
 
@@ -16,21 +15,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string processor_name() {
-  std::ifstream info("/proc/cpuinfo");
-  for (std::string line; std::getline(info, line);) {
-    const std::size_t colon = line.find(": ");
-    if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
-  }
-  return "unknown";
-}
-
 Json contenders_json(const ComparePlan& plan) {
   Json list = Json::array();
   for (const Contender& contender : plan.contenders) {
     Json one = {{"label", contender.label}};
     if (!contender.method.empty()) one["method"] = contender.method;
     if (!contender.without.empty()) one["without"] = contender.without;
+    if (contender.antialias) one["antialias"] = format_antialias(*contender.antialias);
     if (contender.external) {
       one["command"] = contender.external->command;
       one["time"] = contender.external->time_pattern.empty() ? "CPU time of the program"
@@ -79,29 +70,31 @@ std::string csv_line(const CaseResults& results, const Cell& cell) {
     return csv_number(mean[static_cast<std::size_t>(set)][metric]);
   };
   return fmt::format(
-      "{},{},{},{},{},{},{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{}\n", results.scene.name,
+      "{},{},{},{},{},{},{},{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{}\n", results.scene.name,
       cell.contender, cell.spp, of(PixelSet::kSurface, Metric::kRelmse),
-      of(PixelSet::kSurface, Metric::kTemporalError), of(PixelSet::kSurface, Metric::kPsnr),
-      of(PixelSet::kSurface, Metric::kSsim), of(PixelSet::kYoung, Metric::kRelmse),
-      of(PixelSet::kOld, Metric::kRelmse), cell.render_ms, cell.denoise_ms, cell.total_ms(),
-      cell.memory_mb, cell.extra_spp, cell.bad_pixels);
+      csv_number(mean[0].energy()), of(PixelSet::kSurface, Metric::kTemporalError),
+      of(PixelSet::kSurface, Metric::kPsnr), of(PixelSet::kSurface, Metric::kSsim),
+      of(PixelSet::kYoung, Metric::kRelmse), of(PixelSet::kOld, Metric::kRelmse), cell.render_ms,
+      cell.denoise_ms, cell.total_ms(), cell.memory_mb, cell.extra_spp, cell.bad_pixels);
 }
 
 std::string table_of(const ComparePlan& plan, const CaseResults& results) {
   const EqualTime equal = equal_time(plan, results);
   std::string text = fmt::format("{}, {} spp, frames {}\n", results.scene.name, plan.shown_spp(),
                                  format_frame_range(plan.measured));
-  text += fmt::format("{:<32}{:>11}{:>11}{:>11}{:>11}{:>9}{:>15}\n", "", "relmse", "temporal",
-                      "render ms", "denoise ms", "MB", fmt::format("at {:.4g} ms", equal.ms));
+  text += fmt::format("{:<32}{:>11}{:>9}{:>11}{:>11}{:>11}{:>9}{:>15}\n", "", "relmse", "energy",
+                      "temporal", "render ms", plan.is_antialiasing() ? "aa ms" : "denoise ms",
+                      "MB", fmt::format("at {:.4g} ms", equal.ms));
   for (const Contender& contender : plan.contenders) {
     const Cell* cell = results.find(contender.label, plan.shown_spp());
     if (!cell) continue;
     const SetFigures mean = cell->mean();
-    text += fmt::format("{:<32}{:>11}{:>11}{:>11.4g}{:>11.4g}{:>9.4g}{:>15}\n", contender.label,
-                        short_number(mean[0][Metric::kRelmse]),
-                        short_number(mean[0][Metric::kTemporalError]), cell->render_ms,
-                        cell->denoise_ms, cell->memory_mb,
-                        short_number(equal.relmse.at(contender.label)));
+    text +=
+        fmt::format("{:<32}{:>11}{:>9}{:>11}{:>11.4g}{:>11.4g}{:>9.4g}{:>15}\n", contender.label,
+                    short_number(mean[0][Metric::kRelmse]), short_number(mean[0].energy()),
+                    short_number(mean[0][Metric::kTemporalError]), cell->render_ms,
+                    cell->antialias ? cell->antialias->ms : cell->denoise_ms, cell->memory_mb,
+                    short_number(equal.relmse.at(contender.label)));
   }
   return text;
 }
@@ -139,12 +132,8 @@ EqualTime equal_time(const ComparePlan& plan, const CaseResults& results) {
 }
 
 Json to_json(const ComparePlan& plan, const std::vector<CaseResults>& results) {
-  const Machine machine = this_machine();
   Json json = {{"software", program_version()},
-               {"machine",
-                {{"processor", machine.processor},
-                 {"cores", machine.cores},
-                 {"compiler", machine.compiler}}},
+               {"machine", to_json(this_machine())},
                {"settings", settings_json(plan)},
                {"scenes", Json::array()}};
   for (const CaseResults& one : results) {
@@ -163,7 +152,8 @@ Json to_json(const ComparePlan& plan, const std::vector<CaseResults>& results) {
 
 std::string to_csv(const std::vector<CaseResults>& results) {
   std::string text =
-      "scene,contender,spp,relmse,temporal_error,psnr,ssim,relmse_young,relmse_old,render_cpu_ms,"
+      "scene,contender,spp,relmse,energy,temporal_error,psnr,ssim,relmse_young,relmse_old,render_"
+      "cpu_ms,"
       "denoise_cpu_ms,total_cpu_ms,memory_mb,extra_spp,bad_pixels\n";
   for (const CaseResults& one : results) {
     for (const Cell& cell : one.cells) text += csv_line(one, cell);
@@ -178,10 +168,6 @@ std::string to_table(const ComparePlan& plan, const std::vector<CaseResults>& re
     text += table_of(plan, one);
   }
   return text;
-}
-
-Machine this_machine() {
-  return {processor_name(), "GCC " __VERSION__, std::thread::hardware_concurrency()};
 }
 
 }  // namespace eigenlight

@@ -41,11 +41,4 @@ struct EqualTime {
 [[nodiscard]] std::string to_table(const ComparePlan& plan,
                                    const std::vector<CaseResults>& results);
 
-/// Processor, cores and compiler.
-struct Machine {
-  std::string processor, compiler;
-  unsigned cores = 0;
-};
-[[nodiscard]] Machine this_machine();
-
 }  // namespace eigenlight

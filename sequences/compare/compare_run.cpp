@@ -7,7 +7,7 @@
 #include <memory>
 #include <utility>
 
-#include "sequences/compare/compare_judge.h"
+#include "sequences/compare/output_metrics.h"
 #include "sequences/compare/shared_source.h"
 #include "sequences/files/compose.h"
 #include "sequences/runs/output.h"
@@ -24,12 +24,6 @@ double heap_bytes() {
   return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
 }
 
-MetricOptions metric_options(const CompareGroup& group) {
-  MetricOptions options;
-  options.exposure = group.exposure;
-  return options;
-}
-
 fs::path make_folder(const fs::path& path) {
   fs::create_directories(path);
   return path;
@@ -41,7 +35,7 @@ class LiveEntry {
   LiveEntry(const ComparePlan& plan, const CompareGroup& group, const Contender& contender)
       : method_(contender.method),
         options_{.extent = plan.extent, .bases = plan.bases},
-        judge_(metric_options(group)) {
+        metrics_(metric_options(group)) {
     cell_.contender = contender.label;
     cell_.spp = group.spp;
     if (!contender.without.empty()) options_.without = {contender.without};
@@ -51,12 +45,12 @@ class LiveEntry {
                     std::vector<Layer>{Layer::kIndirect}, std::vector<ExrAttribute>{});
   }
 
-  // A method that reads ahead takes no part in shared frames from its first turn on.
-  void take_turn(SharedSource& source) {
+  // A method that reads ahead leaves the shared frames with its first step.
+  void take_frame(SharedSource& source) {
     if (reads_ahead_) return;
-    Turn turn(source);
-    step(turn);
-    reads_ahead_ = turn.was_read_ahead();
+    SingleFrameSource once(source);
+    step(once);
+    reads_ahead_ = once.was_read_ahead();
   }
   void step(FrameSource& source) {
     const double before = heap_bytes();
@@ -72,36 +66,30 @@ class LiveEntry {
     note_growth(before);
   }
   // Of the frame of the last step.
-  void judge(const JudgedFrame& truth, const StageTime& rendering) {
+  void measure(const ReferenceFrame& references, const StageTime& rendering) {
     const Frame& frame = denoiser_->frame();
     const FrameReport& report = denoiser_->report();
     cell_.render_ms += rendering.cpu_ms + report[Stage::kResample].cpu_ms;
-    for (std::size_t s = 0; s < report.time.size(); ++s) {
-      const auto stage = static_cast<Stage>(s);
-      if (stage != Stage::kSource && stage != Stage::kResample) {
-        cell_.denoise_ms += report[stage].cpu_ms;
-      }
-    }
-    cell_.extra_spp += static_cast<double>(report.extra_samples) /
-                       static_cast<double>(std::max<std::int64_t>(report.surface_pixels, 1));
+    cell_.denoise_ms += denoise_cpu_ms(report);
+    cell_.extra_spp += extra_samples_per_pixel(report);
     if (writer_) writer_->write({frame, *output_, denoiser_->age()});
     Planes<3> light;
     modulate(frame.surface.albedo, *output_, light);
-    judge_.add(truth, std::move(light));
+    metrics_.add(references, std::move(light));
   }
   [[nodiscard]] Cell finish() && {
-    const auto count = static_cast<double>(judge_.frames().size());
+    const auto count = static_cast<double>(metrics_.frames().size());
     cell_.render_ms /= count;
     cell_.denoise_ms /= count;
     cell_.extra_spp /= count;
     cell_.memory_mb = peak_ * 1e-6;
-    cell_.frames = judge_.frames();
-    cell_.bad_pixels = judge_.bad_pixels();
+    cell_.frames = metrics_.frames();
+    cell_.bad_pixels = metrics_.bad_pixels();
     return std::move(cell_);
   }
 
  private:
-  // Others allocate in between, so growth is added up over this method's own turns.
+  // Others allocate in between, so growth is added up over this method's own steps.
   void note_growth(double before) {
     held_ += heap_bytes() - before;
     peak_ = std::max(peak_, held_);
@@ -112,7 +100,7 @@ class LiveEntry {
   std::unique_ptr<Denoiser> denoiser_;
   const Planes<3>* output_ = nullptr;
   bool reads_ahead_ = false;
-  Judge judge_;
+  OutputMetrics metrics_;
   std::optional<FrameWriter> writer_;
   Cell cell_;
   double held_ = 0.0, peak_ = 0.0;
@@ -124,7 +112,7 @@ class ExternalEntry {
   ExternalEntry(const ComparePlan& plan, const CompareGroup& group, const Contender& contender)
       : run_(*contender.external, {plan.frames, plan.measured},
              make_folder(group.scratch / contender.label)),
-        judge_(metric_options(group)),
+        metrics_(metric_options(group)),
         extent_(plan.extent) {
     cell_.contender = contender.label;
     cell_.spp = group.spp;
@@ -139,23 +127,23 @@ class ExternalEntry {
     cell_.memory_mb = cost.peak_mb;
     return true;
   }
-  void judge(const JudgedFrame& truth) {
-    judge_.add(truth, run_.output(truth.frame, extent_));
+  void measure(const ReferenceFrame& references) {
+    metrics_.add(references, run_.output(references.frame, extent_));
     if (pictures_.empty()) return;
-    fs::copy_file(run_.output_path(truth.frame),
-                  pictures_ / FilePattern(kFramePattern).name(truth.frame),
+    fs::copy_file(run_.output_path(references.frame),
+                  pictures_ / FilePattern(kFramePattern).name(references.frame),
                   fs::copy_options::overwrite_existing);
   }
   [[nodiscard]] Cell finish(double render_ms) && {
     cell_.render_ms = render_ms;
-    cell_.frames = judge_.frames();
-    cell_.bad_pixels = judge_.bad_pixels();
+    cell_.frames = metrics_.frames();
+    cell_.bad_pixels = metrics_.bad_pixels();
     return std::move(cell_);
   }
 
  private:
   ExternalRun run_;
-  Judge judge_;
+  OutputMetrics metrics_;
   Extent extent_;
   fs::path pictures_;
   Cell cell_;
@@ -208,7 +196,7 @@ class GroupRun {
     }
     for (const auto& entry : external_) {
       if (!entry->run(control.stops)) return false;
-      for (std::size_t i = 0; i < plan_.measured.size(); ++i) entry->judge(truth(i));
+      for (std::size_t i = 0; i < plan_.measured.size(); ++i) entry->measure(references_of(i));
     }
     return true;
   }
@@ -242,25 +230,25 @@ class GroupRun {
     for (std::size_t i = 0; i < plan_.frames.size(); ++i) {
       entry.step(source);
       if (control.stops()) return false;
-      if (i >= warmup) entry.judge(truth(i - warmup), render_times_[i - warmup]);
+      if (i >= warmup) entry.measure(references_of(i - warmup), render_times_[i - warmup]);
     }
     return true;
   }
   void take(SharedSource& source) {
     (void)ages_->step(source);
-    for (const auto& entry : live_) entry->take_turn(source);
+    for (const auto& entry : live_) entry->take_frame(source);
     for (const auto& entry : external_) entry->add(source.frame());
     const int frame = source.frame().index;
     if (frame < plan_.measured.front()) return;
     render_ms_ += source.render_time().cpu_ms;
     render_times_.push_back(source.render_time());
     bits_.push_back(surface_bits(source.frame().surface.id, ages_->age()));
-    const JudgedFrame judged = truth(bits_.size() - 1);
+    const ReferenceFrame references = references_of(bits_.size() - 1);
     for (const auto& entry : live_) {
-      if (!entry->reads_ahead()) entry->judge(judged, source.render_time());
+      if (!entry->reads_ahead()) entry->measure(references, source.render_time());
     }
   }
-  [[nodiscard]] JudgedFrame truth(std::size_t i) const {
+  [[nodiscard]] ReferenceFrame references_of(std::size_t i) const {
     const int frame = plan_.measured[i];
     return {frame, group_.references.load(ReferenceCache::Half::kA, frame),
             group_.references.load(ReferenceCache::Half::kB, frame), bits_[i].clone()};
@@ -278,6 +266,26 @@ class GroupRun {
 };
 
 }  // namespace
+
+MetricOptions metric_options(const CompareGroup& group) {
+  MetricOptions options;
+  options.exposure = group.exposure;
+  return options;
+}
+
+double denoise_cpu_ms(const FrameReport& report) {
+  double ms = 0.0;
+  for (std::size_t s = 0; s < report.time.size(); ++s) {
+    const auto stage = static_cast<Stage>(s);
+    if (stage != Stage::kSource && stage != Stage::kResample) ms += report[stage].cpu_ms;
+  }
+  return ms;
+}
+
+double extra_samples_per_pixel(const FrameReport& report) {
+  return static_cast<double>(report.extra_samples) /
+         static_cast<double>(std::max<std::int64_t>(report.surface_pixels, 1));
+}
 
 std::optional<std::vector<Cell>> run_group(const ComparePlan& plan, const CompareGroup& group,
                                            const RunControl& control) {

@@ -8,6 +8,7 @@
 #include "sequences/compare/compare_cell.h"
 #include "sequences/compare/compare_plan.h"
 #include "sequences/compare/reference_cache.h"
+#include "temporal/denoiser.h"
 
 namespace eigenlight {
 
@@ -23,6 +24,13 @@ struct CompareGroup {
   std::filesystem::path pictures;
   std::filesystem::path scratch;  ///< for programs; made and removed
 };
+
+[[nodiscard]] MetricOptions metric_options(const CompareGroup& group);
+
+/// CPU milliseconds of the method itself: all stages but rendering and resampling.
+[[nodiscard]] double denoise_cpu_ms(const FrameReport& report);
+/// Further samples that the method asked for, per surface pixel.
+[[nodiscard]] double extra_samples_per_pixel(const FrameReport& report);
 
 /// Renders the frames of the plan once and hands each to every contender, so that all see the same
 /// bits, and measures those of plan.measured against both references. Methods that

@@ -86,14 +86,6 @@ double printed_ms(const ExternalMethod& method, const ChildResult& result) {
   return ms;
 }
 
-void write_layer(const std::string& path, std::string_view axes, const Planes<3>& planes) {
-  std::vector<ExrChannel> channels;
-  for (std::size_t c = 0; c < 3; ++c) {
-    channels.push_back({std::string(1, axes[c]), ExrType::kFloat, &planes[c]});
-  }
-  write_exr(path, channels, {});
-}
-
 }  // namespace
 
 bool ExternalMethod::runs_per_sequence() const {
@@ -143,12 +135,12 @@ void ExternalRun::add(const Frame& frame) const {
   if (!std::binary_search(frames().begin(), frames().end(), frame.index)) return;
   Planes<3> color;
   modulate(frame.surface.albedo, frame.lights[0].radiance, color);
-  write_layer(path("color", frame.index), "RGB", color);
+  write_float_layer(path("color", frame.index), "RGB", color);
   if (has_place(method_.command, "albedo")) {
-    write_layer(path("albedo", frame.index), "RGB", frame.surface.albedo);
+    write_float_layer(path("albedo", frame.index), "RGB", frame.surface.albedo);
   }
   if (has_place(method_.command, "normal")) {
-    write_layer(path("normal", frame.index), "XYZ", frame.surface.normal);
+    write_float_layer(path("normal", frame.index), "XYZ", frame.surface.normal);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <xxhash.h>
 
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -11,6 +12,7 @@
 #include "sequences/files/compose.h"
 #include "sequences/files/exr_io.h"
 #include "sequences/files/file_pattern.h"
+#include "sequences/runs/render_plan.h"
 
 namespace eigenlight {
 namespace {
@@ -20,15 +22,16 @@ namespace {
 constexpr std::uint32_t kReferenceSeeds = 0x80000000U;
 
 std::string describe(const ReferenceIdentity& identity) {
-  const nlohmann::ordered_json json{{"scene", identity.scene},
-                                    {"scene_hash", fmt::format("{:016x}", identity.scene_hash)},
-                                    {"perturb", identity.perturb},
-                                    {"width", identity.extent.width},
-                                    {"height", identity.extent.height},
-                                    {"bounces", identity.bounces},
-                                    {"spp", identity.spp},
-                                    {"seed", identity.seed},
-                                    {"renderer", fmt::format("{:016x}", identity.renderer)}};
+  nlohmann::ordered_json json{{"scene", identity.scene},
+                              {"scene_hash", fmt::format("{:016x}", identity.scene_hash)},
+                              {"perturb", identity.perturb},
+                              {"width", identity.extent.width},
+                              {"height", identity.extent.height},
+                              {"bounces", identity.bounces},
+                              {"spp", identity.spp},
+                              {"seed", identity.seed},
+                              {"renderer", fmt::format("{:016x}", identity.renderer)}};
+  if (identity.antialias) json["antialias"] = format_antialias(*identity.antialias);
   return json.dump(2) + "\n";
 }
 
@@ -59,17 +62,38 @@ std::uint64_t hash_rows(const Planes<3>& planes) {
   return XXH3_64bits_digest(state.get());
 }
 
+RenderOptions options_of(const ReferenceIdentity& identity, ReferenceCache::Half half) {
+  RenderOptions options;
+  options.extent = identity.extent;
+  options.spp = identity.spp;
+  options.direct_spp = 0;  // direct light is not kept
+  options.bounces = identity.bounces;
+  const bool is_second = half == ReferenceCache::Half::kB;
+  options.seed = kReferenceSeeds | (2 * identity.seed + (is_second ? 1U : 0U));
+  if (identity.antialias) {
+    // The samples are spread over the places within a pixel.
+    options.spp = std::max(identity.spp / identity.antialias->samples, 1);
+    options.direct_spp = kReferenceDirectSpp;
+  }
+  return options;
+}
+
 }  // namespace
 
-std::uint64_t renderer_hash(const AnimatedScene& animated, const RenderOptions& options) {
+std::uint64_t renderer_hash(const AnimatedScene& animated, const RenderOptions& options,
+                            const std::optional<AntialiasOptions>& antialias) {
   RenderOptions probe = options;
   probe.spp = 1;
-  probe.direct_spp = 0;
+  probe.direct_spp = antialias ? 1 : 0;
   LiveSource source(animated.scene, animated.animation, probe, {0});
   Frame frame;
   if (!source.next(frame)) throw std::logic_error("a source of one frame has one");
   Planes<3> light;
-  modulate(frame.surface.albedo, frame.lights[0].radiance, light);
+  if (antialias) {
+    source.picture(*antialias, frame, frame.lights[0].radiance, light);
+  } else {
+    modulate(frame.surface.albedo, frame.lights[0].radiance, light);
+  }
   return hash_rows(light);
 }
 
@@ -96,20 +120,19 @@ std::vector<int> ReferenceCache::missing(Half half, const std::vector<int>& fram
 
 void ReferenceCache::render(Half half, const std::vector<int>& frames,
                             const AnimatedScene& animated, const RunControl& control) const {
-  RenderOptions options;
-  options.extent = identity_.extent;
-  options.spp = identity_.spp;
-  options.direct_spp = 0;  // direct light is not kept
-  options.bounces = identity_.bounces;
-  options.seed = kReferenceSeeds | (2 * identity_.seed + (half == Half::kB ? 1U : 0U));
-  LiveSource source(animated.scene, animated.animation, options, frames);
+  LiveSource source(animated.scene, animated.animation, options_of(identity_, half), frames);
   Frame frame;
   Planes<3> light;
   while (source.next(frame)) {
-    modulate(frame.surface.albedo, frame.lights[0].radiance, light);
-    const ExrChannel channels[] = {{"indirect.R", ExrType::kFloat, &light[0]},
-                                   {"indirect.G", ExrType::kFloat, &light[1]},
-                                   {"indirect.B", ExrType::kFloat, &light[2]},
+    if (identity_.antialias) {
+      source.picture(*identity_.antialias, frame, frame.lights[0].radiance, light);
+    } else {
+      modulate(frame.surface.albedo, frame.lights[0].radiance, light);
+    }
+    const std::string layer = identity_.antialias ? "" : "indirect.";
+    const ExrChannel channels[] = {{layer + "R", ExrType::kFloat, &light[0]},
+                                   {layer + "G", ExrType::kFloat, &light[1]},
+                                   {layer + "B", ExrType::kFloat, &light[2]},
                                    {"id", ExrType::kUint, &frame.surface.id}};
     write_exr(file(half, frame.index), channels, {});
     control.frame_done(frame.index);
@@ -119,7 +142,7 @@ void ReferenceCache::render(Half half, const std::vector<int>& frames,
 
 Planes<3> ReferenceCache::load(Half half, int frame) const {
   const std::filesystem::path path = file(half, frame);
-  Planes<3> planes = ExrReader(path).read_planes<3>("indirect");
+  Planes<3> planes = ExrReader(path).read_planes<3>(identity_.antialias ? "" : "indirect");
   const Extent size = planes[0].extent();
   if (size == identity_.extent) return planes;
   throw std::runtime_error(fmt::format("{} is {}x{}, expected {}x{}", path.string(), size.width,

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,16 +34,21 @@ struct ReferenceIdentity {
   int spp = 0;                 ///< of each of the two
   std::uint32_t seed = 0;      ///< below 2^30
   std::uint64_t renderer = 0;  ///< renderer_hash()
+  /// Of the indirect light times albedo where absent, else of the composed picture, antialiased in
+  /// this way; `spp` is then what its samples of a pixel have together.
+  std::optional<AntialiasOptions> antialias = std::nullopt;
 };
 
-/// What the renderer makes of a scene: a hash of one frame of it at one sample a pixel. A change of
-/// the renderer that changes no bit of those paths is none that a reference would show.
-[[nodiscard]] std::uint64_t renderer_hash(const AnimatedScene& animated,
-                                          const RenderOptions& options);
+/// What the renderer makes of a scene: a hash of frame 0 at one sample a pixel, of the indirect
+/// light or of the antialiased picture. A change of the renderer that keeps the bits of those paths
+/// keeps the references valid.
+[[nodiscard]] std::uint64_t renderer_hash(
+    const AnimatedScene& animated, const RenderOptions& options,
+    const std::optional<AntialiasOptions>& antialias = std::nullopt);
 
-/// Two independent renderings A and B of the indirect light (times albedo) of each frame, one EXR
-/// file each, in a directory named after the scene and a hash of the identity. What is there is
-/// used, frame by frame, so that a stopped rendering goes on where it was.
+/// Two independent renderings A and B of each frame, one EXR file each, in a directory named after
+/// the scene and a hash of the identity. What is there is used, frame by frame, so that a stopped
+/// rendering goes on where it was.
 class ReferenceCache {
  public:
   enum class Half { kA, kB };

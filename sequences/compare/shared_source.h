@@ -8,7 +8,7 @@
 namespace eigenlight {
 
 /// Renders each frame once and hands it to as many methods as ask for it, each of which gets the
-/// bits that a LiveSource of its own would give, further samples included.
+/// bits that a LiveSource of its own would give, extra samples included.
 class SharedSource final : public FrameSource {
  public:
   /// `live` must outlive this.
@@ -35,12 +35,12 @@ class SharedSource final : public FrameSource {
   bool has_frame_ = false;
 };
 
-/// One method's turn at a frame of a shared source: it gets the frame once. A method that asks for
-/// another within its step reads ahead, and needs a source of its own.
-class Turn final : public FrameSource {
+/// Hands the frame of a shared source to one method, once. A method that asks for a second frame
+/// within one step reads ahead and needs a source of its own.
+class SingleFrameSource final : public FrameSource {
  public:
   /// `shared` must outlive this.
-  explicit Turn(SharedSource& shared) : shared_(shared) {}
+  explicit SingleFrameSource(SharedSource& shared) : shared_(shared) {}
 
   /// False, as at the end of a sequence, from the second call on.
   [[nodiscard]] bool next(Frame& frame) override { return ++calls_ == 1 && shared_.next(frame); }

@@ -42,6 +42,16 @@ struct ExrAttribute {
 void write_exr(const std::filesystem::path& path, std::span<const ExrChannel> channels,
                std::span<const ExrAttribute> attributes);
 
+/// Writes one picture of 32-bit floats, whose channels are the letters of `axes`: `RGB`, `XYZ`.
+inline void write_float_layer(const std::filesystem::path& path, std::string_view axes,
+                              const Planes<3>& planes) {
+  std::vector<ExrChannel> channels;
+  for (std::size_t c = 0; c < 3; ++c) {
+    channels.push_back({std::string(1, axes.at(c)), ExrType::kFloat, &planes[c]});
+  }
+  write_exr(path, channels, {});
+}
+
 /// Reads layers of any OpenEXR file: scanlines or tiles, one part or many. A layer is what stands
 /// before the last dot of a channel name: `albedo.R` is of `albedo`; bare `R`, `G`, `B`, `A` are of
 /// the layer "", other bare names (`Z`, `id`) are layers of their own. In a file of several parts

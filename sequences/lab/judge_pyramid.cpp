@@ -16,7 +16,7 @@ std::string kind_of(const std::string& name, const PyramidPictures& pictures) {
   return name.ends_with("noisy") ? "painted, noisy" : "painted";
 }
 
-void add(const Likeness& one, Likeness& sum) { sum.psnr += one.psnr, sum.ssim += one.ssim; }
+void add(const Similarity& one, Similarity& sum) { sum.psnr += one.psnr, sum.ssim += one.ssim; }
 
 }  // namespace
 
@@ -29,14 +29,14 @@ std::vector<PyramidJudgement> judge_pyramid(const PyramidPictures& pictures, int
                            [&](const PyramidJudgement& j) { return j.kind == kind; });
     if (at == kinds.end()) at = kinds.insert(at, PyramidJudgement{kind, radius, 0, {}, {}});
     const auto judge = [&one = example](const PyramidWeights& weights) {
-      return likeness(one.filter(weights), one.target(), one.weight());
+      return similarity(one.filter(weights), one.target(), one.weight());
     };
     ++at->pictures;
     add(judge(trained_pyramid_table().weights(r)), at->trained);
     add(judge(untrained_pyramid_weights(r)), at->untrained);
   }
   for (PyramidJudgement& j : kinds) {
-    for (Likeness* sum : {&j.trained, &j.untrained}) {
+    for (Similarity* sum : {&j.trained, &j.untrained}) {
       sum->psnr /= static_cast<double>(j.pictures);
       sum->ssim /= static_cast<double>(j.pictures);
     }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "sequences/lab/train_pyramid.h"
-#include "sequences/metrics/likeness.h"
+#include "sequences/metrics/similarity.h"
 
 namespace eigenlight {
 
@@ -11,7 +11,7 @@ struct PyramidJudgement {
   std::string kind;
   int radius = 0;
   int pictures = 0;
-  Likeness trained, untrained;  ///< against brute force
+  Similarity trained, untrained;  ///< against brute force
 };
 
 /// Painted pictures clean and noisy, files, and frames, at one radius; kinds without a picture are

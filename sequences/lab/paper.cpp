@@ -8,8 +8,9 @@
 #include <stdexcept>
 
 #include "frame/named.h"
-#include "sequences/compare/compare_results.h"
 #include "sequences/files/frame_range.h"
+#include "sequences/files/machine.h"
+#include "sequences/files/markdown.h"
 #include "sequences/files/version.h"
 #include "sequences/lab/paper_reruns.h"
 
@@ -126,26 +127,24 @@ Page paper_page(const Paper& paper, const PaperRun& run, const PaperReport& repo
   return page;
 }
 
-std::string to_markdown(const Paper& paper, const PaperReport& report) {
-  std::string text = fmt::format(
-      "| {} | claim | the paper | here | |\n| --- | --- | --- | --- | --- |\n", paper.name);
+std::string to_markdown(const Paper& paper, const PaperRun& run, const PaperReport& report) {
+  std::vector<std::vector<std::string>> rows;
   for (const PaperClaim& claim : report.claims) {
-    text += fmt::format("| {} | {} | {} | {} | {} |\n", claim.where, claim.claim, claim.theirs,
-                        claim.ours, to_text(claim.verdict));
+    rows.push_back(
+        {claim.where, claim.claim, claim.theirs, claim.ours, std::string(to_text(claim.verdict))});
   }
-  return text;
+  const std::vector<std::string> head{std::string(paper.name), "claim", "the paper", "here", ""};
+  return fmt::format("{} (theirs: {}; here, where the paper gives no size, {}):\n\n", paper.title,
+                     paper.hardware, size_text(run)) +
+         markdown_table(head, rows, head.size());
 }
 
 std::string paper_json(const Paper& paper, const PaperRun& run, const PaperReport& report) {
-  const Machine machine = this_machine();
   Json json = {{"paper", paper.name},
                {"title", paper.title},
                {"paper_hardware", paper.hardware},
                {"software", program_version()},
-               {"machine",
-                {{"processor", machine.processor},
-                 {"cores", machine.cores},
-                 {"compiler", machine.compiler}}},
+               {"machine", to_json(this_machine())},
                {"size", {run.extent.width, run.extent.height}},
                {"frames", format_frame_range(run.frames)},
                {"claims", Json::array()},

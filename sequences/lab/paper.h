@@ -56,8 +56,9 @@ struct Paper {
 /// One section a figure or table of the paper, the claims before them.
 [[nodiscard]] Page paper_page(const Paper& paper, const PaperRun& run, const PaperReport& report);
 
-/// The claims as a table in Markdown.
-[[nodiscard]] std::string to_markdown(const Paper& paper, const PaperReport& report);
+/// The paper's title, both sides' hardware and sizes, and the claims as a table in Markdown.
+[[nodiscard]] std::string to_markdown(const Paper& paper, const PaperRun& run,
+                                      const PaperReport& report);
 
 /// Everything of the page as JSON: paper, hardware, machine, claims, and tables and plots of each
 /// section.

@@ -5,7 +5,7 @@
 
 #include "sequences/lab/paper_xu2024.h"
 #include "sequences/lab/paper_xu2024_uses.h"
-#include "sequences/metrics/likeness.h"
+#include "sequences/metrics/similarity.h"
 
 namespace eigenlight {
 namespace {
@@ -64,7 +64,7 @@ Planes<3> filter(const Down& down, const Up& up, const PyramidInputs& in) {
 struct Omission {
   std::string name;
   double paper_psnr, paper_ssim;  // Fig. 4 or 6
-  Likeness mean;
+  Similarity mean;
 };
 using Omissions = std::array<Omission, 7>;
 constexpr std::size_t kAll = 4, kOutOfFocus = 6;
@@ -76,7 +76,7 @@ Planes<3> brute_force(const PyramidUse<Edge>& use) {
   return wanted;
 }
 
-void add_likeness(const Frame& frame, Omissions& parts) {
+void add_similarity(const Frame& frame, Omissions& parts) {
   const PyramidUse<ReflectionEdge> shiny = reflection_use(frame);
   const PyramidUse<DepthOfFieldEdge> blurred = depth_of_field_use(frame);
   const ReflectionEdge& edge = shiny.edge;
@@ -93,8 +93,8 @@ void add_likeness(const Frame& frame, Omissions& parts) {
   const std::array<Planes<3>, 2> wanted{brute_force(shiny), brute_force(blurred)};
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const bool is_shiny = i <= kAll;
-    const Likeness one =
-        likeness(found[i], wanted[is_shiny ? 0 : 1], is_shiny ? shiny.weight : blurred.weight);
+    const Similarity one =
+        similarity(found[i], wanted[is_shiny ? 0 : 1], is_shiny ? shiny.weight : blurred.weight);
     parts[i].mean.psnr += one.psnr / static_cast<double>(kScenes.size());
     parts[i].mean.ssim += one.ssim / static_cast<double>(kScenes.size());
   }
@@ -135,7 +135,7 @@ void xu_parts(const PaperRun& run, PaperReport& report) {
   for (const std::string_view name : kScenes) {
     run.step(fmt::format("Fig. 4 and 6, {}", name));
     const PaperScene scene(name, Perturbation::kNone, run.extent, PaperScene::View::kFlight);
-    add_likeness(scene.render(1, {run.frames.back()}).front(), parts);
+    add_similarity(scene.render(1, {run.frames.back()}).front(), parts);
   }
   claim_parts(parts, report);
   PageTable table{

@@ -6,7 +6,7 @@
 
 #include "sequences/lab/paper_xu2024.h"
 #include "sequences/lab/paper_xu2024_uses.h"
-#include "sequences/metrics/likeness.h"
+#include "sequences/metrics/similarity.h"
 #include "temporal/methods.h"
 
 namespace eigenlight {
@@ -17,24 +17,25 @@ constexpr std::array<std::uint32_t, 3> kClouds{1, 2, 3};
 
 // What is compared, and how.
 enum Way { kTrained, kUntrained, kSeparable, kWays };
-using Ways = std::array<Likeness, kWays>;
+using Ways = std::array<Similarity, kWays>;
 
 // Mean and least over the pictures of a use.
 struct UseFigures {
-  std::array<std::vector<Likeness>, kWays> all;
+  std::array<std::vector<Similarity>, kWays> all;
 
   void add(const Ways& ways) {
     for (std::size_t w = 0; w < kWays; ++w) all[w].push_back(ways[w]);
   }
-  [[nodiscard]] Likeness mean(Way way) const {
-    Likeness sum;
-    for (const Likeness& one : all[way]) sum.psnr += one.psnr, sum.ssim += one.ssim;
+  [[nodiscard]] Similarity mean(Way way) const {
+    Similarity sum;
+    for (const Similarity& one : all[way]) sum.psnr += one.psnr, sum.ssim += one.ssim;
     const auto count = static_cast<double>(all[way].size());
     return {sum.psnr / count, sum.ssim / count};
   }
   [[nodiscard]] double least() const {
-    return std::min_element(all[kTrained].begin(), all[kTrained].end(),
-                            [](const Likeness& a, const Likeness& b) { return a.psnr < b.psnr; })
+    return std::min_element(
+               all[kTrained].begin(), all[kTrained].end(),
+               [](const Similarity& a, const Similarity& b) { return a.psnr < b.psnr; })
         ->psnr;
   }
 };
@@ -42,7 +43,7 @@ struct UseFigures {
 // The paper's averages over 10,000 frames, and the lowest of them.
 struct UseClaim {
   std::string where, name;
-  Likeness mean;
+  Similarity mean;
   double least;
 };
 const std::array<UseClaim, 4> kClaims{
@@ -71,11 +72,11 @@ Ways measure(const PyramidUse<Edge>& use, const Show& show) {
   const Planes<3> wanted = show(out);
   Ways ways;
   Pyramid<Edge>(extent, use.edge, trained_pyramid_table()).process(use.inputs(), out);
-  ways[kTrained] = likeness(show(out), wanted, use.weight);
+  ways[kTrained] = similarity(show(out), wanted, use.weight);
   Pyramid<Edge>(extent, untrained(use.edge), untrained_pyramid_table()).process(use.inputs(), out);
-  ways[kUntrained] = likeness(show(out), wanted, use.weight);
+  ways[kUntrained] = similarity(show(out), wanted, use.weight);
   separable_bilateral_filter(use.edge, use.inputs(), out);
-  ways[kSeparable] = likeness(show(out), wanted, use.weight);
+  ways[kSeparable] = similarity(show(out), wanted, use.weight);
   return ways;
 }
 
@@ -111,9 +112,9 @@ void claim_uses(const std::array<UseFigures, 4>& uses, PaperReport& report) {
   int trained_wins = 0, separable_loses = 0;
   // The paper halves the weight of diffuse light.
   const std::array<double, 4> share{0.5 / 3.5, 1.0 / 3.5, 1.0 / 3.5, 1.0 / 3.5};
-  Likeness all;
+  Similarity all;
   for (std::size_t u = 0; u < uses.size(); ++u) {
-    const Likeness ours = uses[u].mean(kTrained);
+    const Similarity ours = uses[u].mean(kTrained);
     const UseClaim& paper = kClaims[u];
     report.claims.push_back(
         {paper.where, fmt::format("PSNR and SSIM against brute force: {}", paper.name),
@@ -162,7 +163,7 @@ Ways measure_raw(const Frame& frame, float exposure) {
     Pyramid<GlobalIlluminationEdge>(
         extent, use.edge, way == kTrained ? trained_pyramid_table() : untrained_pyramid_table())
         .process(use.inputs(), out);
-    ways[way] = likeness(out, wanted, use.weight, display);
+    ways[way] = similarity(out, wanted, use.weight, display);
   }
   return ways;
 }

@@ -31,6 +31,7 @@ Json to_json(const Figures& figures) {
     const auto& value = figures.values[m];
     if (value && std::isfinite(*value)) json[std::string(kMetricNames[m])] = *value;
   }
+  if (const auto energy = figures.energy()) json["energy"] = *energy;
   json["pixels"] = figures.pixels;
   return json;
 }

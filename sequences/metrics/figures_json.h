@@ -7,8 +7,8 @@
 
 namespace eigenlight {
 
-/// {name: value, ..., "pixels": n}; names are kMetricNames. A figure that was not measured is
-/// absent, and so is an infinite PSNR, which JSON cannot hold.
+/// {name: value, ..., "energy": Figures::energy(), "pixels": n}; names are kMetricNames. A figure
+/// that was not measured is absent, and so is an infinite PSNR, which JSON cannot hold.
 [[nodiscard]] nlohmann::ordered_json to_json(const Figures& figures);
 /// {"frame": n, figures of all pixels, "young": {..}, "old": {..}}; sets without pixels are absent.
 [[nodiscard]] nlohmann::ordered_json to_json(const FrameFigures& frame);

@@ -46,23 +46,26 @@ bool has_two(const MetricFrame& frame) { return !frame.reference_b[0].empty(); }
 
 // One channel of one pixel of one frame.
 struct Sample {
-  double x, a, b, r;  // test, both references (the same one twice if there is one), their mean
+  // Both tests and both references, the same one twice where there is one; means of the pairs.
+  double xa, xb, a, b, x, r;
   double display_error;
 };
 
 Sample sample_at(const MetricFrame& frame, std::size_t channel, glm::ivec2 p,
                  const MetricOptions& options) {
   Sample s{};
-  s.x = static_cast<double>(frame.test[channel](p.x, p.y));
+  s.xa = static_cast<double>(frame.test[channel](p.x, p.y));
+  s.xb = frame.test_b[0].empty() ? s.xa : static_cast<double>(frame.test_b[channel](p.x, p.y));
   s.a = static_cast<double>(frame.reference[channel](p.x, p.y));
   s.b = has_two(frame) ? static_cast<double>(frame.reference_b[channel](p.x, p.y)) : s.a;
+  s.x = 0.5 * (s.xa + s.xb);
   s.r = 0.5 * (s.a + s.b);
   s.display_error = display_value(s.x, options) - display_value(s.r, options);
   return s;
 }
 
 void add_still(const Sample& s, Sums& sums) {
-  const double product = (s.x - s.a) * (s.x - s.b);
+  const double product = (s.xa - s.a) * (s.xb - s.b);
   const double scale = 1.0 / (s.r * s.r + kRelmseFloor);
   sums.square += product;
   sums.relative += product * scale;
@@ -74,11 +77,11 @@ void add_still(const Sample& s, Sums& sums) {
 }
 
 void add_temporal(const Sample& now, const Sample& before, float exposure, Sums& sums) {
-  const double change = now.x - before.x;
-  sums.temporal += (change - (now.a - before.a)) * (change - (now.b - before.b));
+  sums.temporal +=
+      (now.xa - before.xa - (now.a - before.a)) * (now.xb - before.xb - (now.b - before.b));
   const double display = now.display_error - before.display_error;
   sums.temporal_display += display * display;
-  const double exposed = static_cast<double>(exposure) * change;
+  const double exposed = static_cast<double>(exposure) * (now.x - before.x);
   sums.flicker += exposed * exposed;
 }
 
@@ -201,9 +204,12 @@ void check_planes(const MetricFrame& frame) {
   check_extent(extent);
   for (std::size_t c = 0; c < 3; ++c) {
     EL_CHECK(frame.test[c].extent() == extent && frame.reference[c].extent() == extent &&
-                 (frame.reference_b[c].empty() || frame.reference_b[c].extent() == extent),
-             "frame {}: test, references and pixel bits must have one size", frame.frame);
+                 (frame.reference_b[c].empty() || frame.reference_b[c].extent() == extent) &&
+                 (frame.test_b[c].empty() || frame.test_b[c].extent() == extent),
+             "frame {}: tests, references and pixel bits must have one size", frame.frame);
   }
+  EL_CHECK(frame.test_b[0].empty() || has_two(frame),
+           "frame {}: a second test needs a second reference", frame.frame);
 }
 
 }  // namespace
@@ -213,6 +219,13 @@ double display_value(double value, const MetricOptions& options) {
   const double v = std::clamp(value * static_cast<double>(options.exposure), 0.0, 1.0);
   // The sRGB curve, IEC 61966-2-1.
   return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1.0 / 2.4) - 0.055;
+}
+
+std::optional<double> Figures::energy() const {
+  const auto& light = (*this)[Metric::kLight];
+  const auto& reference = (*this)[Metric::kReferenceLight];
+  if (!light || !reference || *reference == 0.0) return std::nullopt;
+  return *light / *reference;
 }
 
 void MetricOptions::validate() const {

@@ -13,9 +13,11 @@
 namespace eigenlight {
 
 /// Figures of one frame, or their means over frames. Per pixel and channel x is the test, r the
-/// reference, e = x - r. With two independent references A and B, r = (A + B) / 2 and figures
-/// marked (u) are unbiased by the references' noise; they may then come out below 0. Noise in the
+/// reference, e = x - r. With two independent references A and B, r = (A + B) / 2 and the noise of
+/// the references drops out of the figures marked (u), which may then be below 0. Noise in the
 /// denominator of relMSE leaves a bias there, small while the references are cleaner than the test.
+/// With two independent tests X and Y as well, x = (X + Y) / 2, and the products are those of X - A
+/// and Y - B: the noise of the tests drops out too, and their bias stays.
 ///
 /// LDR figures compare display values d(v) = sRGB(clamp(exposure * v, 0, 1)), whose peak is 1.
 enum class Metric {
@@ -29,7 +31,7 @@ enum class Metric {
   kTpsnr,          ///< dB, -10 log10 mean of (d(x) - d(r) now, less the same one frame ago)^2
   kReferenceNoise,  ///< relMSE of r itself: mean (A - B)^2 / (4 (r^2 + 0.01)), or as given
   kLight,           ///< mean x
-  kReferenceLight,  ///< mean r
+  kReferenceLight,  ///< mean r; energy() is mean x over mean r
   kFlicker,         ///< mean (exposure * (x_t - x_(t-1)))^2 (Chen 2012, 4.2): camera at rest only
   kFlickerUnseen,   ///< 1 if flicker < 2.5e-5, else 0; its mean is the share of frame pairs
   kCount
@@ -76,6 +78,9 @@ struct Figures {
   [[nodiscard]] const std::optional<double>& operator[](Metric m) const {
     return values[static_cast<std::size_t>(m)];
   }
+  /// Mean of the test over mean of the reference: 1 where light is neither lost nor added. Absent
+  /// where light was not measured or the reference is black.
+  [[nodiscard]] std::optional<double> energy() const;
 };
 
 using SetFigures = std::array<Figures, kPixelSetCount>;
@@ -105,6 +110,7 @@ struct MetricFrame {
   bool follows = false;  ///< temporal figures compare it with the frame added before
   Planes<3> test, reference;
   Planes<3> reference_b;     ///< empty without a second reference
+  Planes<3> test_b;          ///< empty without a second test; needs a second reference
   Plane<std::uint8_t> bits;  ///< PixelBits
 };
 

@@ -20,10 +20,6 @@ namespace {
 constexpr std::int64_t kSeeds = std::int64_t{1} << 31;
 constexpr std::uint32_t kReferenceSeeds = 0x80000000U;
 
-// Direct light has far less noise than indirect light, and error is measured on the latter: eight
-// times the default is enough for a picture to look at.
-constexpr int kReferenceDirectSpp = 64;
-
 // Samples of direct light, a third of the rays of a run at 3 spp: only for layers that show it.
 int direct_samples(const std::vector<Layer>& layers, bool is_reference, int usual) {
   const bool shown = std::any_of(layers.begin(), layers.end(), [](Layer layer) {

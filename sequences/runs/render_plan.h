@@ -16,6 +16,8 @@ inline constexpr std::string_view kDefaultMethod = "eigenlight";
 /// The method that renders references: many samples, no denoising, and seeds that no other run has.
 inline constexpr std::string_view kReferenceMethod = "reference";
 inline constexpr int kReferenceSpp = 512;
+/// Of direct light, which has far less noise: eight times the default.
+inline constexpr int kReferenceDirectSpp = 64;
 
 /// As a user gives them.
 struct RenderSettings {

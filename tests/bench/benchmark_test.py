@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tests of sequences/benchmark and of what it writes to docs/."""
+"""Tests of sequences/benchmark and of the document that it writes."""
 
 import contextlib
 import io
@@ -11,45 +11,30 @@ import unittest
 import xml.etree.ElementTree
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path += [str(ROOT / "tests" / "bench"), str(ROOT / "sequences")]
+sys.path.insert(0, str(ROOT / "tests" / "bench"))
 sys.dont_write_bytecode = True
 
 import report  # noqa: E402
-import step_runner  # noqa: E402
 from chart import Chart, spread  # noqa: E402
 from folder_case import FolderTest  # noqa: E402
+from step_runner import Command, Runner, Section, State, Step, bar  # noqa: E402
 
 SVG = "{http://www.w3.org/2000/svg}"
-
-
-class PapersTest(FolderTest):
-    def test_claims_become_a_table_for_each_paper(self):
-        claim = {"where": "Fig. 1", "claim": "fast", "paper": "1 ms", "ours": "2 ms", "verdict": "not"}
-        for name in ("b2012", "a2011"):
-            (self.folder / f"paper-{name}.json").write_text(json.dumps(
-                {"paper": name, "title": f"Title of {name}", "paper_hardware": "a GPU",
-                 "size": [8, 4], "frames": "0-7", "claims": [claim]}))
-        text = report.sections(self.folder, self.folder)["papers"]
-        self.assertIn("Title of a2011 (theirs: a GPU; here, where the paper gives no size, 8x4", text)
-        self.assertIn("| --- | --- | --- | --- | --- |\n| Fig. 1 | fast | 1 ms | 2 ms | not |", text)
-        self.assertLess(text.index("a2011"), text.index("b2012"))
-
-    def test_without_reruns_there_is_no_section(self):
-        self.assertNotIn("papers", report.sections(self.folder, self.folder))
+FACTS = {"date": "2026-01-02", "commit": "commit abc", "machine": "a CPU"}
 
 
 class RunnerTest(FolderTest):
     def step(self, name, text="x", program=None):
-        """Adds `text` to a file each time that it runs."""
+        """Adds `text` to a file each time that it runs, and prints a result."""
         log = self.folder / f"{name}.count"
-        command = ["sh", "-c", f"printf %s '{text}' >> '{log}'; echo result"]
-        return step_runner.Step(name, 1, [program] if program else [],
-                              [(command, self.folder / f"{name}.out")])
+        command = Command(["sh", "-c", f"printf %s '{text}' >> '{log}'; echo result"],
+                          self.folder / f"{name}.out")
+        return Step(name, 1, [program] if program else [], [Section(name, "", [command])])
 
     def run_steps(self, *steps):
-        state = step_runner.State(self.folder / "state.json")
+        state = State(self.folder / "state.json")
         with contextlib.redirect_stderr(io.StringIO()) as err:
-            step_runner.Runner(state, list(steps), self.folder).run_all()
+            Runner(state, list(steps), self.folder, lambda: FACTS).run_all()
         return err.getvalue()
 
     def count(self, name):
@@ -62,6 +47,7 @@ class RunnerTest(FolderTest):
         self.run_steps(self.step("a"), self.step("b"))
         self.assertEqual((self.count("a"), self.count("b")), (1, 1))
         self.assertEqual((self.folder / "a.out").read_text(), "result\n")
+        self.assertEqual(State(self.folder / "state.json").facts(self.step("a")), FACTS)
 
     def test_other_settings_and_programs_run_again(self):
         program = self.folder / "program"
@@ -75,19 +61,26 @@ class RunnerTest(FolderTest):
 
     def test_a_failed_step_keeps_those_before_it_and_leaves_no_half_result(self):
         target = self.folder / "broken.out"
-        broken = step_runner.Step("broken", 1, [], [(["sh", "-c", "echo half; exit 3"], target)])
+        command = Command(["sh", "-c", "echo half; exit 3"], target)
+        broken = Step("broken", 1, [], [Section("broken", "", [command])])
         with self.assertRaises(SystemExit) as raised:
             self.run_steps(self.step("a"), broken)
         self.assertIn("ended with 3", str(raised.exception))
         self.assertFalse(target.exists())
-        state = step_runner.State(self.folder / "state.json")
+        state = State(self.folder / "state.json")
         self.assertTrue(state.is_done(self.step("a")))
         self.assertFalse(state.is_done(broken))
 
+    def test_a_command_of_several_sections_runs_once(self):
+        shared = self.step("a").commands[0]
+        step = Step("a", 1, [], [Section("one", "", [shared]), Section("two", "", [shared])])
+        self.run_steps(step)
+        self.assertEqual(self.count("a"), 1)
+
     def test_bar_counts_down(self):
-        self.assertIn("." * 30, step_runner.bar(0, 10, 10, "a"))
-        self.assertIn("#" * 15 + "." * 15 + "]    5 min left, a", step_runner.bar(5, 10, 5, "a"))
-        self.assertIn("#" * 30, step_runner.bar(11, 10, 0, "a"))
+        self.assertIn("." * 30, bar(0, 10, 10, "a"))
+        self.assertIn("#" * 15 + "." * 15 + "]    5 min left, a", bar(5, 10, 5, "a"))
+        self.assertIn("#" * 30, bar(11, 10, 0, "a"))
 
 
 class CommandTest(unittest.TestCase):
@@ -95,31 +88,77 @@ class CommandTest(unittest.TestCase):
         for words, what in ((["--only", "quality,dinner"], "unknown step 'dinner'"),
                             (["--only", "scaling"], "bench_scaling: No such file"),
                             (["--pace", "fast"], "unrecognized arguments: --pace fast")):
-            command = [sys.executable, str(ROOT / "sequences" / "benchmark"), "--programs", "none"]
+            command = [sys.executable, str(ROOT / "sequences" / "benchmark"), "--programs", "none",
+                       "--docs", "none"]
             run = subprocess.run(command + words, capture_output=True, text=True, check=False)
             self.assertNotEqual(run.returncode, 0)
             self.assertIn(what, run.stderr.strip().splitlines()[-1])
 
+    def test_commands_are_shown_as_one_types_them(self):
+        command = Command(["/home/me/peer", "a b", 3], None, {"SIZE": "36"})
+        self.assertEqual(command.shown([("/home/me/peer", "$(peer)")]), "SIZE=36 $(peer) 'a b' 3")
+        long = Command(["x" * 60, "y" * 60, "z"]).shown()
+        self.assertEqual(long, "x" * 60 + " \\\n  " + "y" * 60 + " z")
 
-class SectionTest(unittest.TestCase):
-    TEXT = ("a\n<!-- benchmark:x -->\nold\n<!-- /benchmark:x -->\nb\n"
-            "<!-- benchmark:y -->\n<!-- /benchmark:y -->\n")
 
-    def test_replaces_between_its_marks_only(self):
-        text = report.set_sections(self.TEXT, {"x": "new\n"})
-        self.assertEqual(text, self.TEXT.replace("old", "new"))
-        self.assertEqual(report.set_sections(text, {"x": "new"}), text)
+class DocumentTest(FolderTest):
+    def setUp(self):
+        super().setUp()
+        self.path = self.folder / "docs" / "measurements.md"
+        self.path.parent.mkdir()
 
-    def test_missing_marks_are_named(self):
-        for broken in (self.TEXT.replace("/benchmark:x", "/benchmark:z"), self.TEXT + self.TEXT, ""):
-            with self.assertRaisesRegex(ValueError, "benchmark:x"):
-                report.set_sections(broken, {"x": "new"})
+    def write(self, name, printed, date, titles=("A: one", "B")):
+        """Runs one step that prints `printed` and writes the document."""
+        title = {"a": "A: one", "b": "B"}[name]
+        command = Command(["echo", printed], self.folder / f"{name}.md")
+        step = Step(name, 1, [], [Section(title, "Words.", [command], self.draw)])
+        state = State(self.folder / "state.json")
+        with contextlib.redirect_stderr(io.StringIO()) as err:
+            Runner(state, [step], self.folder, lambda: dict(FACTS, date=date)).run_all()
+            report.write(self.path, [step], titles, state, [])
+        return err.getvalue()
 
-    def test_the_pages_have_all_marks(self):
-        names = ("quality", "roofline", "peer", "render", "compare", "ablation", "scaling", "targets")
-        for page, marks in (("measurements.md", names), ("papers.md", ("papers",))):
-            text = (ROOT / "docs" / page).read_text(encoding="utf-8")
-            report.set_sections(text, {name: "new" for name in marks})
+    def draw(self, docs):
+        (docs / "x.svg").write_text("<svg/>")
+        return [("a plot", "x.svg")]
+
+    def test_holds_head_contents_commands_results_and_plots(self):
+        self.write("a", "| 1 |", "2026-01-02")
+        text = self.path.read_text()
+        self.assertTrue(text.startswith("# Measurements\n\n"))
+        self.assertIn(f"| machine | {report.facts()['machine']} |", text)
+        self.assertIn("- [A: one](#a-one)\n", text)
+        self.assertIn("## A: one\n\nWords.\n\nMeasured 2026-01-02, commit abc, on a CPU:\n\n"
+                      "```sh\necho '| 1 |'\n```\n\n| 1 |\n\n![a plot](x.svg)\n", text)
+        self.assertTrue((self.path.parent / "x.svg").exists())
+
+    def test_steps_that_were_not_run_keep_their_sections(self):
+        self.write("b", "old b", "2026-01-01")
+        self.write("a", "new a", "2026-01-02")
+        text = self.path.read_text()
+        self.assertLess(text.index("new a"), text.index("old b"))  # in the order of the steps
+        self.assertIn("Measured 2026-01-01", text)
+        self.write("b", "new b", "2026-01-03")
+        self.assertNotIn("old b", self.path.read_text())
+        self.assertNotIn("2026-01-01", self.path.read_text())
+
+    def test_sections_that_no_step_prints_are_dropped_aloud(self):
+        self.write("b", "b", "2026-01-01")
+        said = self.write("a", "a", "2026-01-02", titles=("A: one",))
+        self.assertIn("no step prints the section 'B': dropped", said)
+        self.assertNotIn("## B", self.path.read_text())
+
+    def test_every_step_has_a_section_of_its_own_title(self):
+        text = (ROOT / "sequences" / "benchmark").read_text(encoding="utf-8")
+        space = {"__name__": "benchmark", "__file__": str(ROOT / "sequences" / "benchmark")}
+        exec(compile(text, "benchmark", "exec"), space)  # it has no suffix to be imported by
+        old = sys.argv
+        sys.argv = ["benchmark", "--programs", "none"]
+        self.addCleanup(setattr, sys, "argv", old)
+        with contextlib.redirect_stderr(io.StringIO()):
+            titles = space["all_titles"](space["parse"]())
+        self.assertEqual(len(set(titles)), len(titles))
+        self.assertGreaterEqual(len(titles), len(space["NAMES"]))
 
 
 class ChartTest(FolderTest):
@@ -149,7 +188,7 @@ class ChartTest(FolderTest):
         places = spread([10.0, 50.0, 12.0, 11.0], 17)
         self.assertEqual(places, [10.0, 61.0, 44.0, 27.0])
 
-    def test_what_cannot_be_drawn_is_refused(self):
+    def test_empty_charts_and_values_without_logarithm_are_refused(self):
         with self.assertRaisesRegex(ValueError, "nothing to draw"):
             Chart("empty", "x", "y").svg()
         chart = Chart("zero", "x", "y")
@@ -157,60 +196,24 @@ class ChartTest(FolderTest):
         with self.assertRaisesRegex(ValueError, "no place for 0"):
             chart.svg()
 
-
-class ReportTest(FolderTest):
-    def test_compare_draws_each_scene_and_marks_the_best(self):
+    def test_error_against_time_has_a_plot_for_each_scene(self):
         def cell(name, ms, error):
             return {"contender": name, "spp": 1, "cpu_ms": {"total": ms}, "mean": {"relmse": error}}
 
         results = {
-            "settings": {"contenders": [{"label": "ours"}, {"label": "mean"}, {"label": "OIDN"}],
-                         "ours": "ours", "width": 320, "height": 180, "frames": "40-43",
-                         "spp": [1, 2]},
-            "scenes": [{"name": "atrium, lights",
+            "settings": {"contenders": [{"label": "ours"}, {"label": "mean"}, {"label": "OIDN"}]},
+            "scenes": [{"name": "atrium-lights",
                         "cells": [cell("ours", 10, 0.02), cell("ours", 20, 0.01),
                                   cell("mean", 5, 0.16), cell("mean", 80, 0.01),
                                   cell("OIDN", 90, 0.01), cell("OIDN", 95, -0.001)]}]}
         path = self.folder / "results.json"
         path.write_text(json.dumps(results))
-        text = report.compare(path, self.folder / "plots")
-        # Half of the way from 5 to 80 ms by logarithms; OIDN is nowhere near.
-        self.assertIn("| atrium, lights | 20 | **0.01** | 0.04 | - |", text)
-        svg = (self.folder / "plots" / "error-time-atrium-lights.svg").read_text()
-        root = xml.etree.ElementTree.fromstring(svg)
+        drawn = report.error_time_plots(path)(self.folder)
+        self.assertEqual(drawn, [("atrium-lights: relMSE against CPU time", "plots/error-time-atrium-lights.svg")])
+        root = xml.etree.ElementTree.parse(self.folder / drawn[0][1]).getroot()
         # A figure below zero is noise of the references: it has no place on the plot.
         self.assertEqual([len(line.get("points").split()) for line in root.iter(f"{SVG}polyline")],
                          [2, 2, 1])
-
-    def test_errors_are_read_off_the_curve_only(self):
-        points = [(40.0, 0.1), (10.0, 0.4)]
-        self.assertAlmostEqual(report.error_at(points, 20.0), 0.2)
-        self.assertAlmostEqual(report.error_at(points, 10.0), 0.4)
-        self.assertIsNone(report.error_at(points, 9.9))
-        self.assertIsNone(report.error_at(points, 40.1))
-
-    def test_ablation_sets_each_part_beside_the_whole(self):
-        def cell(name, relmse, ms):
-            return {"contender": name, "spp": 3, "cpu_ms": {"denoise": ms, "total": 2 * ms},
-                    "mean": {"relmse": relmse, "temporal_error": 2 * relmse}}
-
-        results = {"settings": {"contenders": [{"label": "ours", "method": "ours"},
-                                               {"label": "ours-without-x", "without": "x"}],
-                                "ours": "ours", "width": 8, "height": 4, "frames": "1-2", "spp": [3]},
-                   "scenes": [{"name": "atrium", "cells": [cell("ours", 0.01, 10.0),
-                                                           cell("ours-without-x", 0.02, 5.0)]}]}
-        path = self.folder / "results.json"
-        path.write_text(json.dumps(results))
-        text = report.ablation(path)
-        self.assertIn("| all parts | 0.01 (1.00) | 0.02 (1.00) | 10.0 (1.00) | 20 (1.00) |", text)
-        self.assertIn("| without `x` | 0.02 (2.00) | 0.04 (2.00) | 5.0 (0.50) | 10 (0.50) |", text)
-
-    def test_quality_is_a_table_of_methods_by_scenes(self):
-        figures = {"atrium": {"noisy": {"relmse": 1.0}, "eigenlight": {"relmse": 0.01}},
-                   "sponza": {"noisy": {"relmse": 0.5}, "eigenlight": {"relmse": 0.001}}}
-        text = report.quality_pivot(figures, "relmse")
-        self.assertIn("|  | atrium | crytek-sponza |", text)
-        self.assertIn("| `eigenlight` | 0.01 (0.0100) | 0.001 (0.0020) |", text)
 
 
 if __name__ == "__main__":

@@ -17,9 +17,7 @@ from results import load_json, load_results  # noqa: E402
 def run(program, folder):
     """The results of all its benchmarks. No scene from outside the project is used."""
     path = folder / (pathlib.Path(program).name + ".json")
-    # bench_opencv compares inside of a border of twice its largest radius, 32, on each side.
-    heights = "192" if "opencv" in path.name else "36"
-    environment = dict(os.environ, EIGENLIGHT_BENCH_HEIGHTS=heights, EIGENLIGHT_SHARED=str(folder))
+    environment = dict(os.environ, EIGENLIGHT_BENCH_HEIGHTS="36", EIGENLIGHT_SHARED=str(folder))
     command = [program, "--benchmark_min_time=0.001", f"--benchmark_out={path}",
                "--benchmark_out_format=json"]
     if "render" in path.name:
@@ -65,7 +63,7 @@ def check_stages(path):
 
 
 CHECKS = {"bench_render": check_render}
-CHECKS.update({f"bench_{name}": check_timed for name in ("filters", "opencv", "pyramid", "rivals")})
+CHECKS.update({f"bench_{name}": check_timed for name in ("filters", "pyramid", "rivals")})
 
 
 def main():

@@ -10,13 +10,15 @@ table.py targets RESULT.json
     CPU time of each stage by instruction set
 table.py scaling RESULT.json
     of bench_scaling: the loop by pixels and by bases, filters by radius
+table.py render RESULT.json
+    of bench_render: rays of indirect light a second
 
 RESULT.json comes from `bench_denoise --benchmark_out=RESULT.json --benchmark_out_format=json`.
 """
 
 import argparse
 
-from results import load_results
+from results import load_json, load_results
 
 
 LOOP_STAGES = ("warp", "budget", "project", "predict", "bound", "correct", "learn", "update", "filter")
@@ -129,6 +131,19 @@ def scaling(results):
     ])
 
 
+def render(entries):
+    rows = []
+    for entry in entries:
+        if entry.get("error_occurred") or not entry["name"].startswith("indirect_"):
+            continue
+        name = entry["name"].split("/")[0].removeprefix("indirect_")
+        of_cpu = entry["rays"] * entry["real_time"] / entry["cpu_time"]
+        rows.append([name, f"{of_cpu * 1e-6:.2f}", f"{entry['rays'] * 1e-6:.2f}",
+                     f"{entry['rays_per_sample']:.2f}"])
+    head = ["scene", "million rays per CPU second", "per second, all threads", "rays/sample"]
+    return markdown(head, rows)
+
+
 def numbers(text):
     return [int(word) for word in text.split(",")]
 
@@ -136,11 +151,14 @@ def numbers(text):
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("table", choices=["roofline", "loop", "targets", "scaling"])
+    parser.add_argument("table", choices=["roofline", "loop", "targets", "scaling", "render"])
     parser.add_argument("result")
     parser.add_argument("--heights", type=numbers, help="such as 720,1080; without it all")
     parser.add_argument("--bases", type=numbers, help="such as 5; without it all")
     options = parser.parse_args()
+    if options.table == "render":
+        print(render(load_json(options.result)["benchmarks"]))
+        return
     results = load_results(options.result)
     if options.table == "roofline":
         print(roofline(results, options.heights, options.bases))

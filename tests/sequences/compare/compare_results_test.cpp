@@ -53,6 +53,7 @@ TEST(CompareResults, JsonHoldsSettingsMachineAndCells) {
   EXPECT_EQ(cells[0]["contender"], "eigenlight");
   EXPECT_EQ(cells[0]["per_frame"].size(), 3u);
   EXPECT_GT(cells[0]["mean"]["relmse"], 0.0);
+  EXPECT_DOUBLE_EQ(cells[0]["mean"]["energy"].get<double>(), 0.98);
   EXPECT_FALSE(cells[0]["per_frame"][0].contains("temporal_error"))
       << "the first frame has none before it: absent, not 0";
   EXPECT_EQ(
@@ -74,7 +75,7 @@ TEST(CompareResults, CsvHasALineForEachCell) {
   }
   ASSERT_EQ(lines.size(), 1 + results.cells.size());
   for (const std::string& line : lines) {
-    EXPECT_EQ(std::count(line.begin(), line.end(), ','), 14) << line;
+    EXPECT_EQ(std::count(line.begin(), line.end(), ','), 15) << line;
     EXPECT_THAT(line, Not(HasSubstr("nan")));
   }
   EXPECT_THAT(lines[1], HasSubstr("room,eigenlight,1,"));

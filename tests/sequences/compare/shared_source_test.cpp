@@ -29,7 +29,7 @@ class SharedSourceTest : public testing::Test {
   std::unique_ptr<Animation> animation_;
 };
 
-// Methods that ask for further samples, beside one that does not.
+// Methods that ask for extra samples, beside one that does not.
 TEST_F(SharedSourceTest, EveryMethodSeesTheBitsOfASourceOfItsOwn) {
   constexpr std::array<const char*, 3> kNames{"eigenlight", "chen2012", "mean"};
   LiveSource together = live();

@@ -50,8 +50,9 @@ TEST(Paper, ReportsHoldEveryFigure) {
   EXPECT_EQ(section["tables"][0]["rows"][0]["ms"], 2.5);
   EXPECT_EQ(section["tables"][0]["rows"][0]["words"], "few");
   EXPECT_EQ(section["plots"][0]["series"]["a"][1][1], 0.25);
-  EXPECT_THAT(to_markdown(paper, small_report()),
-              HasSubstr("| Table 1 | fast | 1 ms | 2 ms | held in part |"));
+  EXPECT_THAT(to_markdown(paper, run, small_report()),
+              AllOf(HasSubstr("where the paper gives no size, 8x4, frames 0-2"),
+                    HasSubstr("| Table 1 | fast | 1 ms | 2 ms | held in part |")));
   EXPECT_THAT(to_html(paper_page(paper, run, small_report())),
               AllOf(HasSubstr("held in part"), HasSubstr("2 ms")));
 }

@@ -9,7 +9,7 @@
 
 #include "sequences/lab/paper_reruns.h"
 #include "sequences/lab/paper_xu2024_uses.h"
-#include "sequences/metrics/likeness.h"
+#include "sequences/metrics/similarity.h"
 
 namespace eigenlight {
 namespace {
@@ -96,14 +96,14 @@ TEST(PaperXu2024, LikenessIsOfThePixelsThatCount) {
   Planes<3> a = make_planes<3>({16, 16}), b = make_planes<3>({16, 16});
   Plane<float> weight({16, 16});
   for (std::size_t c = 0; c < 3; ++c) a[c].fill(0.6f), b[c].fill(0.5f);
-  EXPECT_EQ(likeness(a, b, weight).psnr, 0.0);
+  EXPECT_EQ(similarity(a, b, weight).psnr, 0.0);
   weight.fill(1.0f);
-  EXPECT_NEAR(likeness(a, b, weight).psnr, 20.0, 1e-4);  // -10 log10 0.1^2
+  EXPECT_NEAR(similarity(a, b, weight).psnr, 20.0, 1e-4);  // -10 log10 0.1^2
   a[1](3, 3) = 0.0f;
   weight(3, 3) = 0.0f;
-  EXPECT_NEAR(likeness(a, b, weight).psnr, 20.0, 1e-4);
-  EXPECT_TRUE(std::isinf(likeness(a, a, weight).psnr));
-  EXPECT_NEAR(likeness(a, a, weight).ssim, 1.0, 1e-12);
+  EXPECT_NEAR(similarity(a, b, weight).psnr, 20.0, 1e-4);
+  EXPECT_TRUE(std::isinf(similarity(a, a, weight).psnr));
+  EXPECT_NEAR(similarity(a, a, weight).ssim, 1.0, 1e-12);
 }
 
 // The whole at the size of a stamp: every claim has a figure, and every table its rows.

@@ -190,6 +190,37 @@ TEST(Metrics, TwoReferencesMakeErrorFiguresUnbiased) {
   EXPECT_NEAR(value(single, Metric::kMse), 0.02, 5e-4);
 }
 
+TEST(Metrics, TwoTestsTakeTheNoiseOfTheTestsOutToo) {
+  constexpr Extent kSize{400, 300};
+  // Tests are 0.1 too bright, with as much noise; one pixel's product has a standard deviation of
+  // 0.04.
+  const auto two = [&](unsigned seed) {
+    MetricFrame frame = make_frame(noise(kSize, 1.1, 0.1, seed), noise(kSize, 1.0, 0.1, seed + 1));
+    frame.test_b = noise(kSize, 1.1, 0.1, seed + 2);
+    frame.reference_b = noise(kSize, 1.0, 0.1, seed + 3);
+    return frame;
+  };
+  SequenceMetrics metrics({});
+  const Figures first = metrics.add(two(1))[PixelSet::kSurface];
+  EXPECT_NEAR(value(first, Metric::kMse), 0.01, 4e-4);
+  EXPECT_NEAR(first.energy().value(), 1.1, 1e-3);
+  MetricFrame next = two(5);
+  next.follows = true;
+  EXPECT_NEAR(value(metrics.add(std::move(next))[PixelSet::kSurface], Metric::kTemporalError), 0.0,
+              4e-4);
+  MetricFrame single = two(1);
+  single.test_b = {};
+  EXPECT_NEAR(value(measure(std::move(single)), Metric::kMse), 0.02, 4e-4)
+      << "one test cannot tell its noise from error";
+}
+
+TEST(Metrics, EnergyIsLightOverLightOfTheReference) {
+  EXPECT_DOUBLE_EQ(
+      measure(make_frame(constant(kSmall, 0.75), constant(kSmall, 0.5))).energy().value(), 1.5);
+  EXPECT_FALSE(measure(make_frame(constant(kSmall, 0.75), constant(kSmall, 0.0))).energy());
+  EXPECT_FALSE(Figures().energy());
+}
+
 TEST(Metrics, KnownReferenceNoiseIsSubtracted) {
   MetricOptions options;
   options.reference_noise = 0.1;
@@ -233,6 +264,9 @@ TEST(Metrics, BadInputsAreNamed) {
   SequenceMetrics metrics({});
   EXPECT_THROW((void)metrics.add(make_frame(constant(kSmall, 1), constant({7, 13}, 1))),
                std::invalid_argument);
+  MetricFrame one_reference = make_frame(constant(kSmall, 1), constant(kSmall, 1));
+  one_reference.test_b = constant(kSmall, 1);
+  EXPECT_THROW((void)metrics.add(std::move(one_reference)), std::invalid_argument);
 }
 
 }  // namespace

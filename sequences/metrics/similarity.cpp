@@ -1,12 +1,14 @@
-#include "sequences/metrics/likeness.h"
+#include "sequences/metrics/similarity.h"
 
 namespace eigenlight {
 
-Likeness likeness(const Planes<3>& found, const Planes<3>& wanted, const Plane<float>& weight,
-                  const MetricOptions& options) {
+Similarity similarity(const Planes<3>& found, const Planes<3>& wanted, const Plane<float>& weight,
+                      const MetricOptions& options) {
   const Extent extent = weight.extent();
-  MetricFrame frame{
-      0, false, make_planes<3>(extent), make_planes<3>(extent), {}, Plane<std::uint8_t>(extent)};
+  MetricFrame frame;
+  frame.test = make_planes<3>(extent);
+  frame.reference = make_planes<3>(extent);
+  frame.bits = Plane<std::uint8_t>(extent);
   copy_planes(found, frame.test);
   copy_planes(wanted, frame.reference);
   for (int y = 0; y < extent.height; ++y) {
@@ -20,10 +22,10 @@ Likeness likeness(const Planes<3>& found, const Planes<3>& wanted, const Plane<f
   return {figures[Metric::kPsnr].value_or(0.0), figures[Metric::kSsim].value_or(0.0)};
 }
 
-Likeness likeness(const Planes<3>& found, const Planes<3>& wanted, const Plane<float>& weight) {
+Similarity similarity(const Planes<3>& found, const Planes<3>& wanted, const Plane<float>& weight) {
   MetricOptions as_they_are;
   as_they_are.is_display = true;
-  return likeness(found, wanted, weight, as_they_are);
+  return similarity(found, wanted, weight, as_they_are);
 }
 
 }  // namespace eigenlight

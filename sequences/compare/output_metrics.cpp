@@ -1,4 +1,4 @@
-#include "sequences/compare/compare_judge.h"
+#include "sequences/compare/output_metrics.h"
 
 #include <cmath>
 #include <utility>
@@ -29,22 +29,23 @@ Plane<std::uint8_t> surface_bits(const Plane<std::uint32_t>& id, const Plane<flo
   return bits;
 }
 
-void Judge::add(const JudgedFrame& truth, Planes<3> test) {
+void OutputMetrics::add(const ReferenceFrame& references, Planes<3> test, Planes<3> second) {
   MetricFrame frame;
-  frame.frame = truth.frame;
-  frame.follows = !frames_.empty() && frames_.back().frame + 1 == truth.frame;
-  frame.bits = truth.bits.clone();
+  frame.frame = references.frame;
+  frame.follows = !frames_.empty() && frames_.back().frame + 1 == references.frame;
+  frame.bits = references.bits.clone();
   for (int y = 0; y < frame.bits.height(); ++y) {
     for (int x = 0; x < frame.bits.width(); ++x) {
-      const bool is_good = is_finite(test, x, y);
-      if (!is_good && (truth.bits(x, y) & kSurfaceBit)) ++bad_pixels_;
-      if (!is_good || !is_finite(truth.a, x, y) || !is_finite(truth.b, x, y)) continue;
+      const bool is_good = is_finite(test, x, y) && (second[0].empty() || is_finite(second, x, y));
+      if (!is_good && (references.bits(x, y) & kSurfaceBit)) ++bad_pixels_;
+      if (!is_good || !is_finite(references.a, x, y) || !is_finite(references.b, x, y)) continue;
       frame.bits(x, y) = static_cast<std::uint8_t>(frame.bits(x, y) | kFiniteBit);
     }
   }
   frame.test = std::move(test);
-  frame.reference = clone(truth.a);
-  frame.reference_b = clone(truth.b);
+  frame.test_b = std::move(second);
+  frame.reference = clone(references.a);
+  frame.reference_b = clone(references.b);
   frames_.push_back(metrics_.add(std::move(frame)));
 }
 
