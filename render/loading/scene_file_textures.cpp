@@ -98,6 +98,22 @@ bool has_holes(const Texture& texture, float cutoff) {
   return false;
 }
 
+/// Moves the images that could be read to the scene. Returns the index of each texture, or -1.
+std::vector<int> add_textures(std::vector<ImageRead>& images, Scene& scene,
+                              std::vector<std::string>& notes) {
+  std::vector<int> texture_of(images.size(), -1);
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    if (images[i].texture) {
+      texture_of[i] = static_cast<int>(scene.textures.size());
+      scene.textures.push_back(std::move(*images[i].texture));
+    } else {
+      ++scene.missing_textures;
+      notes.push_back(fmt::format("{}; gray replaces it", images[i].error));
+    }
+  }
+  return texture_of;
+}
+
 }  // namespace
 
 std::vector<unsigned> read_materials(const ModelFile& file, Scene& scene,
@@ -118,17 +134,7 @@ std::vector<unsigned> read_materials(const ModelFile& file, Scene& scene,
   }
   parallel_for(static_cast<int>(images.size()),
                [&](int i) { read_image(file, images[static_cast<std::size_t>(i)]); });
-
-  std::vector<int> texture_of(images.size(), -1);
-  for (std::size_t i = 0; i < images.size(); ++i) {
-    if (images[i].texture) {
-      texture_of[i] = static_cast<int>(scene.textures.size());
-      scene.textures.push_back(std::move(*images[i].texture));
-    } else {
-      ++scene.missing_textures;
-      notes.push_back(fmt::format("{}; gray replaces it", images[i].error));
-    }
-  }
+  const std::vector<int> texture_of = add_textures(images, scene, notes);
   for (unsigned i = 0; i < file.model.mNumMaterials; ++i) {
     if (image_of[i] < 0) continue;
     Material& material = scene.materials[first + i];

@@ -32,8 +32,8 @@ void MeshBuilder::quad(const glm::vec3& a, const glm::vec3& b, const glm::vec3& 
   const glm::vec3 normal = normalize(cross(b - a, d - a));
   const unsigned first = vertex(a, normal, axis_uv(a, normal));
   for (const glm::vec3& p : {b, c, d}) vertex(p, normal, axis_uv(p, normal));
-  mesh_.triangles.emplace_back(first, first + 1, first + 2);
-  mesh_.triangles.emplace_back(first, first + 2, first + 3);
+  add_triangle(first, first + 1, first + 2);
+  add_triangle(first, first + 2, first + 3);
 }
 
 void MeshBuilder::picture(const glm::vec3& top_left, const glm::vec3& right,
@@ -89,12 +89,8 @@ void MeshBuilder::lathe(const Lathe& shape) {
     length = next;
     for (unsigned s = 0; s < static_cast<unsigned>(shape.segments); ++s) {
       // One of the two triangles has no area at the axis.
-      if (shape.profile[i].x > 0) {
-        mesh_.triangles.emplace_back(low + s, low + s + 1, high + s + 1);
-      }
-      if (shape.profile[i + 1].x > 0) {
-        mesh_.triangles.emplace_back(low + s, high + s + 1, high + s);
-      }
+      if (shape.profile[i].x > 0) add_triangle(low + s, low + s + 1, high + s + 1);
+      if (shape.profile[i + 1].x > 0) add_triangle(low + s, high + s + 1, high + s);
     }
   }
 }
@@ -145,8 +141,8 @@ void MeshBuilder::add_grid(int columns, int rows, std::span<const glm::vec3> poi
   for (unsigned j = 0; j < static_cast<unsigned>(rows); ++j) {
     for (unsigned i = 0; i + 1 < width; ++i) {
       const unsigned a = first + j * width + i, b = a + width;
-      mesh_.triangles.emplace_back(a, b, b + 1);
-      mesh_.triangles.emplace_back(a, b + 1, a + 1);
+      add_triangle(a, b, b + 1);
+      add_triangle(a, b + 1, a + 1);
     }
   }
 }

@@ -66,6 +66,7 @@ class MeshBuilder {
  private:
   void add_grid(int columns, int rows, std::span<const glm::vec3> points);
   unsigned vertex(const glm::vec3& position, const glm::vec3& normal, const glm::vec2& uv);
+  void add_triangle(unsigned a, unsigned b, unsigned c) { mesh_.triangles.emplace_back(a, b, c); }
 
   Mesh mesh_;
 };

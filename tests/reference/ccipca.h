@@ -1,5 +1,5 @@
-// Candid covariance-free incremental PCA on plain vectors, in double, as Weng, Zhang and Hwang 2003
-// and Chen 2012 (Algorithm 1) have it.
+// Candid covariance-free incremental PCA on plain vectors, in double: Weng, Zhang and Hwang 2003,
+// and Chen 2012, Algorithm 1.
 #pragma once
 
 #include <Eigen/Dense>

@@ -1,4 +1,4 @@
-// Guided filter as its equations have it: double, window by window, no tiles.
+// The equations of the guided filter in double, window by window, without tiles.
 #pragma once
 
 #include <Eigen/Dense>
@@ -98,7 +98,7 @@ inline std::vector<WindowFit> fit_windows(const GuidedInputs& in, const GuidedOp
   return fits;
 }
 
-/// All pixels, wanted or not.
+/// All pixels, whether `wanted` or not.
 inline Planes<3> guided_filter(const GuidedInputs& in, const GuidedOptions& options) {
   const Extent extent = in.weight.extent();
   const std::vector<WindowFit> fits = fit_windows(in, options);

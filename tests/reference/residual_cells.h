@@ -1,4 +1,4 @@
-// Twin of temporal/change/residual_cells: one cell or one pixel, in double, as the header says it.
+// Twin of temporal/change/residual_cells in double: one cell or one pixel at a time.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ struct Cell {
   std::array<double, 3> mean{};
 };
 
-/// `In` is CorrectionInputs, or the same in double.
+/// `In` is CorrectionInputs, or its twin in double.
 template <typename In>
 Cell cell(const In& in, int cx, int cy) {
   Cell out;
@@ -48,7 +48,8 @@ Cell cell(const In& in, int cx, int cy) {
   return out;
 }
 
-/// What pixel (x, y) gets of the cells around: `cells` as a frame, and mean(channel, x, y) of each.
+/// The correction of pixel (x, y) from the cells around it: `cells` holds their geometry, and
+/// mean(channel, x, y) their values.
 template <typename Mean, typename In>
 std::array<double, 3> spread(const FrameInput& cells, const Mean& mean, const In& in, int x,
                              int y) {

@@ -15,6 +15,26 @@ struct Updated {
   double age = 0.0;
 };
 
+/// c and q of a pixel, and h = c . q. h is at least 1 for every c and q of one tile, but may be
+/// less between tiles.
+struct PixelCoefficients {
+  std::array<double, kMaxBases> c{}, q{};
+  double h = 0.0;
+};
+
+template <typename In>
+PixelCoefficients pixel_coefficients(const In& in, int x, int y) {
+  PixelCoefficients out;
+  for (int k = 0; k < in.active; ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    out.c[at] = k == 0 ? 1.0 : coefficient_at(in.coefficients, x, y, k);
+    out.q[at] = coefficient_at(in.learning_rates, x, y, k);
+    out.h += out.c[at] * out.q[at];
+  }
+  out.h = std::max(out.h, 1.0);
+  return out;
+}
+
 /// `In` is UpdateInputs and `Field` BasisField, or the same in double.
 template <typename In, typename Field>
 Updated update(const In& in, const Field& old, glm::ivec2 p) {
@@ -24,18 +44,7 @@ Updated update(const In& in, const Field& old, glm::ivec2 p) {
   const double s = in.samples(x, y);
   const double n = known ? std::max(0.0, static_cast<double>(in.new_age(x, y)) - s) : 0.0;
   out.age = known || usable ? static_cast<double>(in.new_age(x, y)) : 0.0;
-
-  std::array<double, kMaxBases> c{}, q{};
-  double h = 0.0;
-  for (int k = 0; k < in.active; ++k) {
-    const auto at = static_cast<std::size_t>(k);
-    c[at] = k == 0 ? 1.0 : coefficient_at(in.coefficients, x, y, k);
-    q[at] = coefficient_at(in.learning_rates, x, y, k);
-    h += c[at] * q[at];
-  }
-  // h is at least 1 for every c and q of one tile, but may be less between tiles.
-  h = std::max(h, 1.0);
-
+  const auto [c, q, h] = pixel_coefficients(in, x, y);
   for (std::size_t channel = 0; channel < 3; ++channel) {
     const double correction = known && in.correction != nullptr
                                   ? static_cast<double>((*in.correction)[channel](x, y))

@@ -1,4 +1,4 @@
-// The source of known truth that `eigenlight stress` runs on, under the name that tests know.
+// The source with a known true image that `eigenlight stress` also uses.
 #pragma once
 
 #include "sequences/stress/analytic_source.h"

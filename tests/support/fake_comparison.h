@@ -1,4 +1,4 @@
-// A comparison without any rendering: made-up figures and pictures.
+// A comparison with made-up figures and pictures, without rendering.
 #pragma once
 
 #include <cmath>
@@ -63,7 +63,7 @@ inline CaseResults fake_results(const ComparePlan& plan, const std::string& name
   return results;
 }
 
-/// Plain squares, each frame and tile of a gray of its own.
+/// Squares of one gray each, a different one for each frame and tile.
 inline PageGallery fake_gallery(const ComparePlan& plan) {
   PageGallery gallery{"Pictures", "", plan.measured, {{"crop", "a square"}}, {}};
   gallery.kinds.push_back({"error", "how much", {"rgb(0 0 0)", "rgb(255 255 255)"}, "0", "1"});

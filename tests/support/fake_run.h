@@ -1,5 +1,4 @@
-// A run's directory without a renderer: the files that `eigenlight render` leaves, of made-up
-// light.
+// Writes the directory of a run as `eigenlight render` does, with made-up light.
 #pragma once
 
 #include <cmath>

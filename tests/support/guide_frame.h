@@ -1,4 +1,4 @@
-// Guide rays without a renderer: what antialiasing looks at, set by hand.
+// Frames for tests of antialiasing: guide rays whose hits are set by hand.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -9,7 +9,7 @@
 
 namespace eigenlight::test {
 
-/// A frame of nothing but sky, until set() says otherwise.
+/// A frame that shows sky in each pixel until set() puts a surface there.
 struct GuideFrame {
   explicit GuideFrame(Extent extent) : hits(extent), indirect(make_planes<3>(extent)) {
     frame.resize(extent);
@@ -43,7 +43,7 @@ struct GuideFrame {
   Planes<3> indirect;
 };
 
-/// Random surfaces with some sky and some light that is not a number.
+/// Random surfaces with some sky and some NaN light.
 inline GuideFrame random_guides(Extent extent, std::uint32_t seed) {
   GuideFrame guides(extent);
   for (int y = 0; y < extent.height; ++y) {

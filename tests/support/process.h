@@ -1,4 +1,4 @@
-// Other processes, for tests of whole programs.
+// Runs programs as child processes.
 #pragma once
 
 #include <fcntl.h>
@@ -43,7 +43,7 @@ class Process {
   }
 
   void signal(int number) const { ::kill(pid_, number); }
-  /// Waits for its end; the exit status, or 128 + signal as a shell has it.
+  /// Waits until the process ends. Returns its exit status, or 128 + the signal that ended it.
   [[nodiscard]] int wait() {
     int status = 0;
     ::waitpid(pid_, &status, 0);

@@ -1,4 +1,4 @@
-// Frames of fixed seeds: a few planes in space, seen twice, with everything that goes wrong.
+// Random frames of fixed seeds: tilted planes seen by a moving camera, with sky and invalid light.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace eigenlight {
 
-/// Uniform numbers keyed by pixel and a running dimension.
+/// Uniform numbers: the same for the same seed, pixel and count of calls.
 class PixelRandom {
  public:
   PixelRandom(std::uint32_t seed, int x, int y)
@@ -155,7 +155,7 @@ inline void fill_light(const RandomFrameOptions& options, PixelRandom& random, F
   return plane;
 }
 
-/// All values and ages, but not what rows hold behind their last pixel.
+/// Compares all values and ages, but not the padding at the end of rows.
 inline void fill_bases(BasisField& field, float value) {
   const auto [width, height] = field.extent();
   for (int y = 0; y < height; ++y) {

@@ -29,7 +29,7 @@ enum class FaultKind {
 inline constexpr std::array<std::string_view, 8> kFaultNames{"NaN",   "Inf", "-Inf", "1e30",
                                                              "1e-40", "-3",  "1e9",  "0"};
 
-/// Which layer it hits: light, or what tells how to treat light.
+/// The layer that a fault changes: light, or one that tells how to treat light.
 enum class FaultLayer { kLight, kMotion, kNormal, kDepth, kPreviousDepth, kAlbedo };
 inline constexpr std::array<std::string_view, 6> kLayerNames{"light", "motion",         "normal",
                                                              "depth", "previous depth", "albedo"};
@@ -133,7 +133,7 @@ struct FaultChoice {
                                rc::gen::set(&Fault::height, rc::gen::inRange(1, 20)));
 }
 
-/// Sizes around those of vectors (up to 16), coefficient tiles (32) and stage tiles (64 x 16).
+/// Sizes near those of vectors (up to 16), coefficient tiles (32) and stage tiles (64 x 16).
 [[nodiscard]] inline rc::Gen<Extent> any_extent() {
   return rc::gen::build<Extent>(rc::gen::set(&Extent::width, rc::gen::inRange(1, 70)),
                                 rc::gen::set(&Extent::height, rc::gen::inRange(1, 36)));

@@ -1,5 +1,5 @@
-// Frames for filters that work on one frame: tilted planes with everything that goes wrong, and
-// two walls that meet at an edge.
+// Frames for spatial filters: tilted planes with sky and invalid light, and two walls that meet at
+// an edge.
 #pragma once
 
 #include <cmath>
@@ -57,7 +57,7 @@ struct SpatialCase {
     filter.process(inputs(), out);
     return out;
   }
-  /// As filters that exclude what is not finite see it.
+  /// The guide image of filters that leave out values that are not finite.
   [[nodiscard]] bool is_usable(int x, int y) const {
     bool finite = true;
     for (const auto& plane : signal) finite = finite && std::isfinite(plane(x, y));

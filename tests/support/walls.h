@@ -1,4 +1,4 @@
-// Two walls that meet in an edge: geometry that lies in planes, seen aslant.
+// Two walls that meet in an edge, seen at an angle.
 #pragma once
 
 #include <glm/glm.hpp>

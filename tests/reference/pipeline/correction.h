@@ -9,12 +9,10 @@
 #include "tests/reference/atrous.h"
 #include "tests/reference/coefficients.h"
 #include "tests/reference/firefly_bound.h"
+#include "tests/reference/pipeline/inputs.h"
 #include "tests/reference/residual_cells.h"
 
 namespace eigenlight::twin {
-
-using reference::Image;
-using Light = reference::LightImages;
 
 /// Planes that the stages between prediction and update share.
 struct Residual : reference::FireflyImages {
@@ -24,14 +22,7 @@ struct Residual : reference::FireflyImages {
         change(TileGrid(extent, kCoefficientTile, kCoefficientTile)) {}
 
   Light correction;
-  PerTile<double> change;  // how surely the light of each tile changed
-};
-
-/// CorrectionInputs in double.
-struct CellInputs {
-  const FrameInput& guides;
-  const Light& residual;
-  const Image &innovation, &age, &samples, &variance;
+  PerTile<double> change;  // in [0, 1]: how certain it is that the light of a tile changed
 };
 
 /// Cells with their geometry, mean residual (0, 1, 2) and its noise (3).
@@ -107,7 +98,7 @@ inline PerTile<double> open_gates(const Residual& r, const TileGrid& grid) {
   return gate;
 }
 
-/// Correction::process(): fills r.correction, and takes its luminance from r.innovation.
+/// Correction::smooth(): fills r.correction, and subtracts its luminance from r.innovation.
 inline void correct(const CorrectionOptions& options, const FrameInput& frame, Residual& r) {
   const Extent extent = r.age.extent();
   const TileGrid grid(extent, kCoefficientTile, kCoefficientTile);

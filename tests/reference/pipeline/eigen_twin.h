@@ -1,5 +1,5 @@
-// EigenDenoiser in double, whole images instead of tiles and rows: what rounding does to the fast
-// one shows against it. Stages are the twins that the tests of their kernels use.
+// EigenDenoiser in double, on whole images instead of tiles and rows, to show what rounding does.
+// Its stages are the twins that the tests of kernels use.
 #pragma once
 
 #include "reproject/surface_history.h"
@@ -9,6 +9,7 @@
 #include "tests/reference/guided_filter.h"
 #include "tests/reference/innovation.h"
 #include "tests/reference/pipeline/correction.h"
+#include "tests/reference/pipeline/inputs.h"
 #include "tests/reference/pipeline/memory.h"
 #include "tests/reference/predict.h"
 #include "tests/reference/signal.h"
@@ -17,12 +18,9 @@
 
 namespace eigenlight::twin {
 
-using reference::Bases;
-using reference::Coefficients;
-
-/// A frame as the fast denoiser met it. Geometry, granted samples, and births and ends of bases are
-/// inputs: float and double may decide differently where a value meets a threshold. All light is
-/// computed here.
+/// A frame of the fast denoiser. Geometry, granted samples, and births and ends of bases are
+/// inputs, because float and double may decide differently where a value is near a threshold. All
+/// light is computed here.
 struct Given {
   const FrameInput& frame;
   bool cut;
@@ -118,14 +116,6 @@ class EigenTwin {
     });
   }
 
-  /// SumInputs in double.
-  struct Sums {
-    const Bases& bases;
-    const Planes<3>& light;
-    const Image& variance;
-    int active;
-  };
-
   void project(const FrameInput& frame) {
     const TileGrid& grid = coefficients_.grid();
     const Sums in{bases_, frame.lights[0].radiance, r_.variance, memory_.active()};
@@ -151,11 +141,6 @@ class EigenTwin {
       r_.variance(x, y) = std::min(twin.variance_factor * r_.variance(x, y), 1e36);
     });
   }
-
-  /// InnovationInputs in double.
-  struct Innovations {
-    const Image &innovation, &age, &samples;
-  };
 
   // New ages, and variances of one frame.
   void test_innovation(const FrameInput& frame) {
@@ -199,15 +184,6 @@ class EigenTwin {
     }
     return edges;
   }
-
-  /// UpdateInputs in double.
-  struct Updates {
-    const Coefficients &coefficients, &learning_rates;
-    const Light& residual;
-    const Light* correction;
-    const Image &samples, &old_age, &new_age;
-    int active, newborn;
-  };
 
   void update(int newborn) {
     const Updates in{coefficients_, learning_rates_, r_.residual,      &r_.correction, r_.samples,

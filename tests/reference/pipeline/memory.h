@@ -1,4 +1,4 @@
-// Twin of CoefficientHistory that takes and gives double; slots are born and retired as it is told.
+// Twin of CoefficientHistory in double. Its caller decides which slots are born and retired.
 #pragma once
 
 #include <vector>

@@ -190,9 +190,12 @@ TEST(Pyramid, PointSpreadsLikeAGaussian) {
       }
     }
     const double sigma = std::sqrt(spread / sum / 2.0);
-    EXPECT_NEAR(sum / 4.0, 1.0, 0.1) << radius;
-    EXPECT_NEAR(sigma / wanted, 1.0, 0.2) << radius;
-    EXPECT_LT(std::sqrt(off / length), 0.4) << radius;
+    EXPECT_NEAR(sum / 4.0, 1.0, 0.01) << radius;
+    // The table is trained to remove noise too, which widens the kernel by up to 18 %. Untrained
+    // weights widen it by 120 to 160 %.
+    EXPECT_GE(sigma / wanted, 1.0) << radius;
+    EXPECT_LE(sigma / wanted, 1.2) << radius;
+    EXPECT_LT(std::sqrt(off / length), 0.35) << radius;
   }
 }
 

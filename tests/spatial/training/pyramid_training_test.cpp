@@ -153,18 +153,19 @@ TEST(PyramidTraining, CallbackStopsTraining) {
                std::invalid_argument);
 }
 
-// The table that is committed, on pictures that it was not trained on, against the settings of
-// section 5.1(e).
+// The committed table on a picture that it was not trained on, against the untrained weights of
+// section 5.1(e). It is trained to remove noise too, so its lead shrinks as the radius grows.
 TEST(PyramidTraining, TrainedTableIsCloserToBruteForce) {
   const Picture picture({72, 72}, 1001);
-  for (const float radius : {1.0f, 3.0f, 8.0f, 16.0f, 24.0f}) {
+  for (const auto& [radius, share] :
+       {std::pair(1.0f, 0.05), {3.0f, 0.12}, {8.0f, 0.35}, {16.0f, 0.5}, {24.0f, 0.55}}) {
     const PyramidExample example = picture.example(radius);
     const double trained =
         mse(example.filter(trained_pyramid_table().weights(radius)), example.target());
     const double untrained =
         mse(example.filter(untrained_pyramid_weights(radius)), example.target());
-    EXPECT_LT(trained, 0.6 * untrained) << "radius " << radius;
-    EXPECT_GT(-10.0 * std::log10(trained), 38.0) << "radius " << radius;
+    EXPECT_LT(trained, share * untrained) << "radius " << radius;
+    EXPECT_GT(-10.0 * std::log10(trained), 40.0) << "radius " << radius;
   }
 }
 

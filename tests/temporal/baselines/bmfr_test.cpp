@@ -54,13 +54,9 @@ TEST(BmfrFit, RecoversASumOfFeatures) {
   }
 }
 
-TEST(BmfrFit, MatchesTheLeastSquaresSolution) {
-  // Offset 3 (8, 0) shifts one block to the corner of the image, and its edges are mirrored. Noise
-  // on the features leaves no singular direction, so normal equations in double give the same
-  // light.
-  const Extent extent{8, 16};
+// A scene of random geometry and light.
+Scene random_scene(Extent extent) {
   Scene scene(extent);
-  for (auto& plane : scene.frame.surface.normal) plane.fill(0.0f);
   for (int y = 0; y < extent.height; ++y) {
     for (int x = 0; x < extent.width; ++x) {
       PixelRandom random(5, x, y);
@@ -71,13 +67,17 @@ TEST(BmfrFit, MatchesTheLeastSquaresSolution) {
       for (auto& plane : scene.light) plane(x, y) = random.between(0.0f, 2.0f);
     }
   }
-  Planes<3> out = make_planes<3>(extent);
-  bmfr_fit({scene.frame, scene.light, scene.usable, 3, 1e-5f}, out);
+  return scene;
+}
 
-  Eigen::MatrixXd a(8 * 16, 10), b(8 * 16, 3);
-  for (int y = 0; y < 16; ++y) {
-    for (int x = 0; x < 8; ++x) {
-      const Eigen::Index row = y * 8 + x;
+// Light of all pixels, row by row, fitted to the features by normal equations in double.
+Eigen::MatrixXd least_squares(const Scene& scene) {
+  const Extent extent = scene.frame.extent();
+  const auto pixels = static_cast<Eigen::Index>(extent.pixels());
+  Eigen::MatrixXd a(pixels, 10), b(pixels, 3);
+  for (int y = 0; y < extent.height; ++y) {
+    for (int x = 0; x < extent.width; ++x) {
+      const Eigen::Index row = y * extent.width + x;
       const glm::dvec3 at(position(scene.frame, x, y));
       const auto& n = scene.frame.surface.normal;
       a.row(row) << 1.0, n[0](x, y), n[1](x, y), n[2](x, y), at.x, at.y, at.z, at.x * at.x,
@@ -85,9 +85,17 @@ TEST(BmfrFit, MatchesTheLeastSquaresSolution) {
       b.row(row) << scene.light[0](x, y), scene.light[1](x, y), scene.light[2](x, y);
     }
   }
-  // The block repeats the 8 columns of the image four times and its 16 rows twice, so all pixels
-  // have the same weight.
-  const Eigen::MatrixXd fit = a * (a.transpose() * a).ldlt().solve(a.transpose() * b);
+  return a * (a.transpose() * a).ldlt().solve(a.transpose() * b);
+}
+
+// Offset 3 (8, 0) shifts one block to the corner of the image, and its edges are mirrored: it
+// repeats the 8 columns of the image four times and its 16 rows twice, so all pixels have the same
+// weight. Noise on the features leaves no singular direction.
+TEST(BmfrFit, MatchesTheLeastSquaresSolution) {
+  const Scene scene = random_scene({8, 16});
+  Planes<3> out = make_planes<3>({8, 16});
+  bmfr_fit({scene.frame, scene.light, scene.usable, 3, 1e-5f}, out);
+  const Eigen::MatrixXd fit = least_squares(scene);
   for (int y = 0; y < 16; ++y) {
     for (int x = 0; x < 8; ++x) {
       for (int c = 0; c < 3; ++c) {

@@ -136,23 +136,34 @@ TEST(ResidualCells, ConfirmedPixelsReceiveAConstantResidual) {
   EXPECT_LT(left_out, confirmed / 20);
 }
 
-// Every second column of blocks is significant.
-TEST(ResidualCells, BlocksAreSignificantIfTheirMeanExceedsItsNoise) {
-  const Extent extent{613, 19};
-  Scene scene(extent);
-  scene.samples.fill(1.0f);
-  scene.age.fill(1e6f);
-  scene.variance.fill(1.0f);
-  // Means of 64 pixels have a standard deviation of 1/8, and the limit is three of them: 3/8.
-  for (int y = 0; y < extent.height; ++y) {
-    for (int x = 0; x < extent.width; ++x) scene.innovation(x, y) = x % 16 < 8 ? 0.37f : 0.38f;
+// 77 x 3 blocks of pixels whose innovations have a variance of 1.
+struct BlockScene : Scene {
+  BlockScene() : Scene({613, 19}) {
+    samples.fill(1.0f);
+    age.fill(1e6f);
+    variance.fill(1.0f);
   }
-  const auto row = [&](int y) {
+  template <typename Value>
+  void set_innovation(const Value& value) {
+    for (int y = 0; y < innovation.height(); ++y) {
+      for (int x = 0; x < innovation.width(); ++x) innovation(x, y) = value(x, y);
+    }
+  }
+  // The row of blocks that starts at y.
+  [[nodiscard]] std::vector<ResidualBlock> row(int y) const {
     std::vector<ResidualBlock> blocks(77);
-    test_blocks(scene.in(), {0, y, extent.width, std::min(y + 8, extent.height)}, blocks);
+    test_blocks(in(), {0, y, innovation.width(), std::min(y + 8, innovation.height())}, blocks);
     return blocks;
-  };
+  }
+};
+
+// Means of 64 pixels have a standard deviation of 1/8, and the limit is three of them: 3/8. Every
+// second column of blocks is beyond.
+TEST(ResidualCells, BlocksAreSignificantIfTheirMeanExceedsItsNoise) {
+  BlockScene scene;
+  scene.set_innovation([](int x, int) { return x % 16 < 8 ? 0.37f : 0.38f; });
   for_each_target([&] {
+    const auto row = [&](int y) { return scene.row(y); };
     const auto blocks = row(8);
     for (std::size_t i = 0; i < 76; ++i) {
       EXPECT_EQ(blocks[i].confirmed, 64);
@@ -167,12 +178,13 @@ TEST(ResidualCells, BlocksAreSignificantIfTheirMeanExceedsItsNoise) {
     EXPECT_EQ(row(16)[76].confirmed, 15);
     EXPECT_FALSE(row(16)[76].is_asked);
   });
-  // Blocks with 8 confirmed pixels are not tested.
-  for (int y = 0; y < extent.height; ++y) {
-    for (int x = 0; x < extent.width; ++x) scene.innovation(x, y) = y % 8 == 0 ? 5.0f : kNan;
-  }
+}
+
+TEST(ResidualCells, BlocksOfFewConfirmedPixelsAreNotTested) {
+  BlockScene scene;
+  scene.set_innovation([](int, int y) { return y % 8 == 0 ? 5.0f : kNan; });
   for_each_target([&] {
-    for (const ResidualBlock& block : row(0)) {
+    for (const ResidualBlock& block : scene.row(0)) {
       EXPECT_LE(block.confirmed, 8);
       EXPECT_FALSE(block.is_asked || block.is_significant);
     }
