@@ -12,7 +12,8 @@
 
 namespace eigenlight {
 
-/// Appends named values.
+/// Appends named values. StateReader has functions of the same names, so that one template can list
+/// the values of both save() and load().
 class StateWriter {
  public:
   template <typename T>

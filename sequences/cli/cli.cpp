@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "frame/bad_file.h"
 #include "sequences/cli/command.h"
 #include "sequences/cli/compare_command.h"
 #include "sequences/cli/evaluate_command.h"
@@ -19,7 +20,6 @@
 #include "sequences/cli/render_command.h"
 #include "sequences/cli/stress_command.h"
 #include "sequences/cli/train_pyramid_command.h"
-#include "sequences/files/checkpoint.h"
 #include "sequences/files/shell_quote.h"
 #include "sequences/files/version.h"
 
@@ -51,7 +51,9 @@ std::string usage_error(const CLI::App& app, const CLI::ParseError& error,
                           app.get_subcommands().empty() && args.size() > 1;
   const std::string what =
       is_unknown ? fmt::format("unknown command '{}'", args[1]) : one_line(error.what());
-  return what + "; see eigenlight --help";
+  const auto chosen = app.get_subcommands();
+  return fmt::format("{}; see eigenlight {}--help", what,
+                     chosen.empty() ? "" : chosen.front()->get_name() + " ");
 }
 
 // The exit status if the command line asks for help or is wrong; nothing if a command is to be run.
@@ -96,7 +98,7 @@ int run_command_line(std::span<const char* const> args, Console console) {
     return kInterrupted;
   } catch (const std::invalid_argument& error) {
     return fail(console, error.what(), kBadInput);
-  } catch (const CheckpointError& error) {
+  } catch (const BadFile& error) {
     return fail(console, error.what(), kBadInput);
   } catch (const std::bad_alloc&) {
     return fail(console, "out of memory", kFailed);

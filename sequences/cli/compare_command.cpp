@@ -21,7 +21,7 @@
 #include "sequences/files/atomic_file.h"
 #include "sequences/files/file_pattern.h"
 #include "sequences/files/ldr_image.h"
-#include "sequences/runs/scene_source.h"
+#include "sequences/runs/open_scene.h"
 
 namespace eigenlight {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "sequences/cli/markdown_option.h"
 #include "sequences/files/atomic_file.h"
+#include "sequences/files/directory.h"
 #include "sequences/files/frame_range.h"
 #include "sequences/lab/paper.h"
 #include "sequences/runs/render_plan.h"
@@ -35,20 +36,13 @@ PaperRun make_run(const Paper& paper, const CompareSettings& settings) {
   return run;
 }
 
-fs::path make_directory(const std::string& name) {
-  std::error_code error;
-  fs::create_directories(name, error);
-  if (fs::is_directory(name)) return name;
-  throw std::runtime_error(fmt::format("{}: cannot make the directory: {}", name,
-                                       error ? error.message() : "Not a directory"));
-}
-
 }  // namespace
 
 int compare_paper(const CompareSettings& settings, const Job& job) {
   const Paper& paper = find_paper(settings.paper);
   PaperRun run = make_run(paper, settings);
-  const fs::path directory = make_directory(settings.directory);
+  const fs::path directory = settings.directory;
+  make_directory(directory);
   run.step = [&](const std::string& what) {
     job.stop_if_interrupted("stopped; nothing was written");
     job.say(fmt::format("{}: {}", paper.name, what));

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sequences/files/atomic_file.h"
+#include "sequences/files/directory.h"
 #include "sequences/metrics/evaluate.h"
 #include "sequences/metrics/figures_json.h"
 
@@ -145,7 +146,7 @@ int run(const EvaluateCommand& command, const Console& console) {
   const Evaluation evaluation = evaluate(command.evaluate);
   const std::string json = to_json(evaluation).dump(2) + "\n";
   if (!command.directory.empty()) {
-    std::filesystem::create_directories(command.directory);
+    make_directory(command.directory);
     write_file_atomically(std::filesystem::path(command.directory) / "evaluate.json", json);
   }
   console.out << (command.json ? json : to_table(evaluation));

@@ -4,6 +4,9 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "sequences/cli/job.h"
 #include "sequences/lab/judge_pyramid.h"
@@ -14,6 +17,10 @@ namespace {
 // Painted pictures from this seed on and this frame are not among those that trained the table.
 constexpr std::uint32_t kSeed = 1000;
 constexpr int kFrame = 40;
+
+constexpr std::string_view kTableHead =
+    "| radius | pictures | | trained | untrained |\n"
+    "| ---: | --- | ---: | ---: | ---: |\n";
 
 struct JudgeCommand {
   PyramidPictures pictures{.painted = 6, .seed = kSeed, .frame = kFrame};
@@ -41,13 +48,14 @@ int run(const JudgeCommand& command, const Console& console) {
     EL_CHECK(radius >= 1 && radius <= 64, "radius {}: expected 1 to 64", radius);
   }
   const Job job(command.job, console);
-  console.out << "| radius | pictures | | trained | untrained |\n"
-                 "| ---: | --- | ---: | ---: | ---: |\n";
+  bool has_head = false;
   for (const int radius : command.radii) {
     job.stop_if_interrupted("stopped");
-    for (const PyramidJudgement& j : judge_pyramid(command.pictures, radius, command.side)) {
-      console.out << row(j) << std::flush;
-    }
+    // Reads all files: errors come before the head of the table.
+    const std::vector<PyramidJudgement> judgements =
+        judge_pyramid(command.pictures, radius, command.side);
+    if (!std::exchange(has_head, true)) console.out << kTableHead;
+    for (const PyramidJudgement& j : judgements) console.out << row(j) << std::flush;
   }
   return kSuccess;
 }

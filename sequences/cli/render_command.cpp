@@ -8,12 +8,13 @@
 #include <memory>
 
 #include "sequences/cli/job.h"
-#include "sequences/files/version.h"
 #include "sequences/pages/run_page.h"
+#include "sequences/runs/open_scene.h"
 #include "sequences/runs/render_plan.h"
+#include "sequences/runs/run_description.h"
 #include "sequences/runs/run_directory.h"
 #include "sequences/runs/run_log.h"
-#include "sequences/runs/scene_source.h"
+#include "sequences/runs/run_totals.h"
 #include "temporal/methods.h"
 #include "temporal/stage_clock.h"
 
@@ -25,39 +26,6 @@ using Clock = std::chrono::steady_clock;
 // A checkpoint holds the whole history (67 MB at 1280x720 with 3 bases). Once in ten seconds keeps
 // its cost under a few percent, and no crash costs more than ten seconds of work.
 constexpr std::chrono::seconds kCheckpointInterval{10};
-
-RunDescription describe(const RenderSettings& settings, const RenderPlan& plan,
-                        const Scene& scene) {
-  RunDescription run;
-  run.scene = settings.scene;
-  run.title = scene.title.empty() ? scene.name : scene.title;
-  run.scene_hash = scene_hash(scene);
-  run.environment = settings.environment;
-  run.frames = plan.frames;
-  run.extent = plan.render.extent;
-  run.spp = plan.render.spp;
-  run.direct_spp = plan.render.direct_spp;
-  run.bounces = plan.render.bounces;
-  run.method = plan.method;
-  run.without = fmt::format("{}", fmt::join(plan.without, ","));
-  run.bases = plan.bases;
-  run.seed = plan.render.seed;
-  run.perturb = plan.perturb;
-  run.antialias = format_antialias(plan.antialias);
-  run.layers = format_layers(plan.layers);
-  run.exposure = scene.exposure;
-  return run;
-}
-
-// What every frame file says about the run.
-std::vector<ExrAttribute> file_attributes(const RunDescription& run) {
-  return {{"Software", program_version()},      {"eigenlight.scene", run.scene},
-          {"eigenlight.method", run.method},    {"eigenlight.without", run.without},
-          {"eigenlight.bases", run.bases},      {"eigenlight.spp", run.spp},
-          {"eigenlight.bounces", run.bounces},  {"eigenlight.seed", fmt::format("{}", run.seed)},
-          {kPerturbAttribute, run.perturb},     {"eigenlight.antialias", run.antialias},
-          {"eigenlight.exposure", run.exposure}};
-}
 
 // The frame loop of one process.
 class RenderRun {
@@ -106,7 +74,7 @@ void RenderRun::say_what_comes(const FrameWriter& writer) const {
 
 int RenderRun::run() {
   Scene scene = load();
-  const RunDescription description = describe(settings_, plan_, scene);
+  const RunDescription description = describe_run(settings_, plan_, scene);
   const auto animation = make_flythrough(scene, plan_.perturbation, plan_.render.extent);
   denoiser_ = make_denoiser(
       plan_.denoiser,

@@ -54,8 +54,8 @@ std::vector<StressCase> chosen(const StressSettings& settings) {
 
 Result run(const StressCase& stress_case, std::uint32_t seed) {
   const auto start = std::chrono::steady_clock::now();
-  Lab lab(seed);
-  Result result{stress_case, stress_case.run(lab), lab.steps(), lab.worst_step(), 0.0};
+  StressLog log(seed);
+  Result result{stress_case, stress_case.run(log), log.steps(), log.worst_step(), 0.0};
   const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
   result.seconds = time.count();
   return result;
@@ -146,8 +146,8 @@ Json to_json(const Result& result) {
 void record(const Result& result, const StressSettings& settings, const Console& console) {
   const std::filesystem::path directory =
       std::filesystem::path(settings.directory) / std::string(result.what.name);
-  Lab lab(settings.seed, StressRecording{directory, result.worst_step});
-  (void)result.what.run(lab);
+  StressLog log(settings.seed, StressRecording{directory, result.worst_step});
+  (void)result.what.run(log);
   console.err << fmt::format(
       "{} is broken; see before.exr, frame.exr and state.bin in {}, and repeat it with\n"
       "  eigenlight stress --case {} --seed {}\n",

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <memory>
+#include <stdexcept>
 
 #include "sequences/cli/job.h"
 #include "sequences/files/atomic_file.h"
@@ -18,8 +20,17 @@ struct TrainCommand {
   JobOptions job;
 };
 
+// Training takes long: a directory that does not exist is reported before it.
+void check_directory_of(const std::filesystem::path& file) {
+  const std::filesystem::path directory = std::filesystem::absolute(file).parent_path();
+  if (std::filesystem::is_directory(directory)) return;
+  throw std::runtime_error(
+      fmt::format("{}: cannot write: {} is not a directory", file.string(), directory.string()));
+}
+
 int run(const TrainCommand& command, const Console& console) {
   const Job job(command.job, console);
+  check_directory_of(command.output);
   const PyramidTable table = train_pyramid_table(
       command.train,
       [&](const TrainedRadius& done) {

@@ -10,7 +10,7 @@
 #include "sequences/compare/output_metrics.h"
 #include "sequences/compare/shared_source.h"
 #include "sequences/files/compose.h"
-#include "sequences/runs/output.h"
+#include "sequences/runs/frame_writer.h"
 #include "temporal/methods.h"
 
 namespace eigenlight {

@@ -16,8 +16,8 @@
 namespace eigenlight {
 namespace {
 
-// Name of the temporary file under way, for remove_unfinished_file(). Plain storage, because a
-// signal handler may read it at any moment; the flag says when it is whole.
+// Name of the temporary file being written, for remove_unfinished_file(). Plain storage, because a
+// signal handler may read it at any moment; the flag says when it is complete.
 char unfinished_path[PATH_MAX];
 std::atomic<bool> is_unfinished{false};
 
@@ -50,7 +50,7 @@ class TemporaryFile {
     }
   }
   void commit() {
-    // Some file systems report a full disk only here.
+    // Some file systems report a full disk only on close.
     const int closed = ::close(descriptor_);
     descriptor_ = -1;
     if (closed != 0) fail(errno);

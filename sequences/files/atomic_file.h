@@ -1,4 +1,4 @@
-// Files that are there whole or not at all.
+// Files that are written completely or not at all.
 #pragma once
 
 #include <filesystem>
@@ -7,17 +7,17 @@
 
 namespace eigenlight {
 
-/// Writes `bytes` under a temporary name beside `path` (`.name.tmp`), then renames it to `path`. On
-/// failure the temporary file is removed, an older file at `path` stays as it was, and
-/// std::runtime_error names the path and the system's reason. No fsync: this guards against a full
-/// disk and a stopped process, not against a power cut. One call at a time per process.
+/// Writes `bytes` to a temporary file beside `path` (`.name.tmp`), then renames it to `path`. If
+/// that fails, the temporary file is removed, an older file at `path` stays, and std::runtime_error
+/// names the path and the system's reason. There is no fsync: this guards against a full disk and a
+/// stopped process, not against a power cut. One call at a time per process.
 void write_file_atomically(const std::filesystem::path& path, std::string_view bytes);
 
 /// The whole content of a file. Throws std::runtime_error naming the path and the reason.
 [[nodiscard]] std::string read_whole_file(const std::filesystem::path& path);
 
-/// Removes the temporary file of a write under way. Async-signal-safe, for a handler that is about
-/// to end the process.
+/// Removes the temporary file of an unfinished write. Async-signal-safe, for a handler that ends
+/// the process.
 void remove_unfinished_file() noexcept;
 
 }  // namespace eigenlight

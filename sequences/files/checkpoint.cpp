@@ -13,7 +13,7 @@
 namespace eigenlight {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "the file is the memory");
+static_assert(std::endian::native == std::endian::little, "the file is written as it is in memory");
 
 constexpr std::string_view kMagic = "ELSTATE\n";
 constexpr std::uint32_t kVersion = 1;
@@ -72,7 +72,7 @@ Checkpoint read_checkpoint(const std::filesystem::path& path) {
                              header.version, kVersion));
   }
   const std::string_view body = std::string_view(bytes).substr(sizeof(header));
-  // Written so that no sum of damaged sizes can overflow.
+  // A sum of damaged sizes could overflow; these comparisons cannot.
   if (header.run_size > body.size() || header.state_size != body.size() - header.run_size) {
     refuse(path, fmt::format("truncated or damaged: {} bytes follow the header, {} + {} expected",
                              body.size(), header.run_size, header.state_size));

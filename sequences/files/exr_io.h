@@ -1,4 +1,4 @@
-// OpenEXR files, in and out. exr_io.cpp is the only file here that includes OpenImageIO for EXR.
+// Reading and writing OpenEXR files.
 #pragma once
 
 #include <array>
@@ -19,15 +19,14 @@ namespace eigenlight {
 
 enum class ExrType { kHalf, kFloat, kUint };
 
-/// One channel to write: a view of a plane of floats (half or float in the file) or of integers
-/// (kUint).
+/// One channel to write: a plane of floats (half or float in the file) or of integers (kUint).
 struct ExrChannel {
   std::string name;  ///< `R`, `albedo.G`
   ExrType type = ExrType::kHalf;
   std::variant<const Plane<float>*, const Plane<std::uint32_t>*> pixels;
 };
 
-/// Row vectors: p' = p M, translation in the last row, as OpenEXR has it.
+/// For row vectors, as in OpenEXR: p' = p M, translation in the last row.
 using ExrMatrix = std::array<float, 16>;
 
 struct ExrAttribute {
@@ -35,10 +34,10 @@ struct ExrAttribute {
   std::variant<int, float, std::string, ExrMatrix> value;
 };
 
-/// Writes a scanline file, ZIP compressed, in one step (write_file_atomically). NaN and Inf are
-/// written as they are; a finite value beyond 65504 becomes Inf in a half channel, so choose kFloat
-/// for such a layer. Throws std::invalid_argument unless all planes have one extent,
-/// std::runtime_error naming the file if it cannot be written. Same input, same bytes.
+/// Writes a scanline file, ZIP compressed, with write_file_atomically(). NaN and Inf are kept; a
+/// finite value beyond 65504 becomes Inf in a half channel, so choose kFloat for such a layer.
+/// Equal input gives equal bytes. Throws std::invalid_argument unless all planes have the same
+/// extent, std::runtime_error naming the file if it cannot be written.
 void write_exr(const std::filesystem::path& path, std::span<const ExrChannel> channels,
                std::span<const ExrAttribute> attributes);
 
@@ -52,14 +51,14 @@ inline void write_float_layer(const std::filesystem::path& path, std::string_vie
   write_exr(path, channels, {});
 }
 
-/// Reads layers of any OpenEXR file: scanlines or tiles, one part or many. A layer is what stands
-/// before the last dot of a channel name: `albedo.R` is of `albedo`; bare `R`, `G`, `B`, `A` are of
-/// the layer "", other bare names (`Z`, `id`) are layers of their own. In a file of several parts
-/// the part's name comes first unless the channel names repeat it.
+/// Reads layers of any OpenEXR file: scanlines or tiles, one part or many. The layer of a channel
+/// is its name up to the last dot: `albedo.R` belongs to `albedo`. Bare `R`, `G`, `B`, `A` belong
+/// to the layer "", other bare names (`Z`, `id`) are layers of their own. In a file of several
+/// parts the part's name comes first, unless the channel names repeat it.
 ///
-/// Layers may also be asked for by our names where another renderer wrote the file: `color`,
-/// `albedo`, `N`, `Z`, `P`, `motion`, `direct`, `indirect` find what Cycles, Arnold, RenderMan and
-/// pbrt call them (exr_layers.h). Names only: units, axes and signs stay the file's.
+/// In files of other renderers our layer names `color`, `albedo`, `N`, `Z`, `P`, `motion`,
+/// `direct`, `indirect` find the layers of Cycles, Arnold, RenderMan and pbrt with that meaning
+/// (exr_layers.h). Only names are translated: units, axes and signs stay those of the file.
 class ExrReader {
  public:
   /// Opens `path` and reads its headers. Throws std::runtime_error naming the file.
@@ -74,10 +73,10 @@ class ExrReader {
   [[nodiscard]] bool has_layer(std::string_view layer) const;
 
   /// All channels of a layer, R G B A or X Y Z W first and in that order. Pixels of the display
-  /// window outside the data window are 0. Throws std::runtime_error naming file and layer if the
-  /// layer is missing or cannot be decoded.
+  /// window outside the data window are 0. Throws BadFile naming file and layer if the layer is
+  /// missing or holds integers, std::runtime_error if it cannot be decoded.
   [[nodiscard]] std::vector<Plane<float>> read(std::string_view layer) const;
-  /// The same, for a layer that must have at least N channels; further ones are left out.
+  /// The first N channels of a layer. Throws BadFile if it has fewer.
   template <int N>
   [[nodiscard]] Planes<N> read_planes(std::string_view layer) const {
     std::vector<Plane<float>> found = read(layer);
@@ -86,7 +85,7 @@ class ExrReader {
     for (std::size_t c = 0; c < N; ++c) planes[c] = std::move(found[c]);
     return planes;
   }
-  /// A layer of one integer channel, exactly. Throws if its channel is not of type uint.
+  /// The first channel of a layer of integers. Throws BadFile if it is not of type uint.
   [[nodiscard]] Plane<std::uint32_t> read_uint(std::string_view layer) const;
 
   /// An attribute of the first part's header.

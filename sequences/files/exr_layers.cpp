@@ -10,10 +10,10 @@ namespace {
 
 struct Aliases {
   std::string_view ours;
-  std::array<std::string_view, 5> theirs;  // empty ones at the end
+  std::array<std::string_view, 5> theirs;  // filled up with empty names
 };
 
-// Cycles, Arnold, RenderMan, V-Ray and pbrt, as their files have them.
+// As in files of Cycles, Arnold, RenderMan, V-Ray and pbrt.
 constexpr std::array<Aliases, 8> kAliases{{
     {"color", {"", "Combined", "RGBA", "Ci"}},
     {"albedo", {"DiffCol", "diffuse_albedo", "Albedo", "Denoising Albedo"}},

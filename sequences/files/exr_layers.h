@@ -1,4 +1,4 @@
-// How renderers name the layers of their EXR files.
+// The names of layers in EXR files of several renderers.
 #pragma once
 
 #include <optional>
@@ -8,19 +8,19 @@
 
 namespace eigenlight {
 
-/// The layer of a full channel name and what is left of the name: `a.b.R` gives {"a.b", "R"}; bare
-/// `R`, `G`, `B`, `A` give {"", name}; any other bare name is a layer of its own: {"Z", ""}.
+/// A full channel name split into layer and channel: `a.b.R` gives {"a.b", "R"}; bare `R`, `G`,
+/// `B`, `A` give {"", name}; any other bare name is a layer of its own: {"Z", ""}.
 struct LayerChannel {
   std::string layer, channel;
 };
 [[nodiscard]] LayerChannel split_channel(std::string_view full_name);
 
-/// Order of a channel within its layer: R G B A, X Y Z W, then all others.
+/// Order of a channel within its layer: R G B A, X Y Z W, then any other.
 [[nodiscard]] int channel_order(std::string_view channel);
 
-/// The one of `layers` that `wanted` means: the same name, else the same name behind a view layer
-/// (`ViewLayer.Normal`), else, for our own names, what other renderers call it, most specific
-/// first. Nothing if there is none.
+/// The entry of `layers` that `wanted` means: the same name, else the same name behind a view layer
+/// (`ViewLayer.Normal`), else, for our own names, the name in another renderer, most specific
+/// first. Nothing if there is no such entry.
 [[nodiscard]] std::optional<std::string> find_layer(const std::vector<std::string>& layers,
                                                     std::string_view wanted);
 

@@ -9,7 +9,7 @@
 namespace eigenlight {
 namespace {
 
-constexpr int kSingleHash = 4;  // as V-Ray, Nuke and oiiotool read a lone '#'
+constexpr int kSingleHash = 4;  // as in V-Ray, Nuke and oiiotool
 constexpr int kMaxDigits = 16;
 
 struct Place {
@@ -72,7 +72,7 @@ std::optional<int> FilePattern::frame(std::string_view text) const {
   int frame = 0;
   const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), frame);
   if (error != std::errc{} || end != number.data() + number.size()) return std::nullopt;
-  // Other widths of the same number are other files.
+  // The same number with another width is another file.
   if (name(frame) != text) return std::nullopt;
   return frame;
 }

@@ -12,7 +12,7 @@
 namespace eigenlight {
 namespace {
 
-// Far beyond any film, and small enough that no arithmetic on them overflows.
+// Longer than any film, and small enough that no arithmetic overflows.
 constexpr int kMaxFrame = 10'000'000;
 constexpr std::size_t kMaxFrames = 1'000'000;
 
@@ -71,8 +71,11 @@ std::vector<int> parse_frame_range(std::string_view text) {
     const std::size_t comma = rest.find(',');
     const std::string_view word = rest.substr(0, comma);
     const auto part = parse_part(word);
-    EL_CHECK(part, "frames '{}': expected 7, 1-10, 5-1 or 1-100x5, or several of them with commas",
-             word);
+    EL_CHECK(
+        part,
+        "frames '{}': expected 7, 1-10, 5-1 or 1-100x5, or several of them with commas; numbers "
+        "up to {}",
+        word, kMaxFrame);
     append(*part, frames);
     if (comma == std::string_view::npos) break;
     rest.remove_prefix(comma + 1);
@@ -88,7 +91,7 @@ std::string format_frame_range(const std::vector<int>& frames) {
     const int step = end < frames.size() ? frames[end] - frames[i] : 0;
     while (end < frames.size() && frames[end] - frames[end - 1] == step) ++end;
     if (!text.empty()) text += ',';
-    // Two frames apart by more than one read better as two numbers.
+    // Two frames with a gap read better as two numbers.
     if (end - i == 1 || (end - i == 2 && std::abs(step) != 1)) {
       text += fmt::format("{}", frames[i]);
       i += 1;

@@ -1,4 +1,4 @@
-// Which frames a run renders, as a user writes them.
+// Lists of frame numbers as users write them.
 #pragma once
 
 #include <string>
@@ -9,11 +9,11 @@ namespace eigenlight {
 
 /// Frames of `text` in the order written: a comma-separated list of `7`, `1-10`, `5-1` (backwards)
 /// and `1-100x5` (every fifth); numbers may be negative (`-10-100`). Throws std::invalid_argument
-/// naming the part that is none of these, a frame named twice, a number beyond +-10,000,000, or
-/// more than 1,000,000 frames.
+/// naming the part that has none of these forms, a frame named twice, a number beyond +-10,000,000,
+/// or more than 1,000,000 frames.
 [[nodiscard]] std::vector<int> parse_frame_range(std::string_view text);
 
-/// The shortest such text for a list of frames: neighbors with one step become a range.
+/// A short text of that form: neighbors at equal steps become a range.
 [[nodiscard]] std::string format_frame_range(const std::vector<int>& frames);
 
 }  // namespace eigenlight

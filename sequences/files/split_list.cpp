@@ -15,7 +15,7 @@ std::vector<std::string> split_list(std::string_view option, std::string_view te
     const std::string entry(rest.substr(0, comma));
     EL_CHECK(!entry.empty(), "{} '{}': expected names with one comma between them", option, text);
     EL_CHECK(std::find(entries.begin(), entries.end(), entry) == entries.end(),
-             "{} '{}': '{}' stands there twice", option, text, entry);
+             "{} '{}': '{}' is named twice", option, text, entry);
     entries.push_back(entry);
     if (comma == std::string_view::npos) return entries;
     rest.remove_prefix(comma + 1);

@@ -1,4 +1,4 @@
-// Lists with commas, as options hold them.
+// Comma-separated lists in options.
 #pragma once
 
 #include <string>
@@ -7,11 +7,11 @@
 
 namespace eigenlight {
 
-/// `a,b` as {a, b}; an empty text as no entry. Throws std::invalid_argument naming `option` if an
-/// entry is empty or stands there twice.
+/// Splits `a,b` into {a, b}; an empty text has no entries. Throws std::invalid_argument naming
+/// `option` if an entry is empty or repeated.
 [[nodiscard]] std::vector<std::string> split_list(std::string_view option, std::string_view text);
 
-/// The same of whole numbers within [low, high].
+/// A list of whole numbers in [low, high].
 struct NumberRange {
   int low, high;
 };

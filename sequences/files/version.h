@@ -1,4 +1,4 @@
-// Which program wrote a file.
+// Name and version of the program, as files record them.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Fig. 5 and 8 of Bauszat 2011: error of the guided filter and its rivals, each at its best.
+// Fig. 5 and 8 of Bauszat 2011: errors of the guided filter and its rivals, each at its best.
 #include "sequences/lab/paper_bauszat2011.h"
 
 #include <fmt/format.h>
@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::array<const char*, 3> kScenes{"cornell", "gallery", "atrium"};
 constexpr std::array<int, 2> kSpp{1, 4};
-constexpr int kReferenceSpp = 32;  // of each of two
+constexpr int kReferenceSpp = 32;  // of each of two references
 constexpr std::array<const char*, 3> kFilters{"guided", "cross-bilateral", "atrous"};
 const std::array<std::vector<int>, 3> kSettings{
     {{3, 4, 6, 8, 12, 16, 24, 32}, {3, 4, 6, 8, 12, 16, 24, 32}, {1, 2, 3, 4, 5, 6}}};
@@ -35,7 +35,7 @@ std::unique_ptr<SpatialFilter> make_filter(Extent extent, std::size_t filter, in
   return std::make_unique<GuidedSpatial>(extent, options);
 }
 
-// Noisy frames of one scene, and the truth.
+// Noisy frames of a scene, and their references.
 struct Shots {
   const PaperScene& scene;
   std::vector<Frame> noisy;
@@ -46,7 +46,7 @@ struct Shots {
                        noisy[frame].surface.id) /
            static_cast<double>(noisy.size());
   }
-  /// Mean squared error; of the noisy frames if there is no filter.
+  // Mean squared error of the filtered frames; of the noisy frames if `filter` is null.
   [[nodiscard]] double error(SpatialFilter* filter) const {
     double sum = 0.0;
     for (std::size_t f = 0; f < noisy.size(); ++f) {
@@ -64,11 +64,11 @@ struct Shots {
   }
 };
 
-// One scene at one number of samples.
+// Errors in one scene at one number of samples.
 struct Result {
   double noisy = 0.0;
-  std::array<std::vector<double>, 3> errors;  // by filter and setting
-  std::array<double, 3> guides{};             // with 1, 3 and 4 guides, guided at its best
+  std::array<std::vector<double>, 3> errors;  // for each filter and setting
+  std::array<double, 3> guides{};  // of the guided filter with 1, 3 and 4 guides, best radius
 
   [[nodiscard]] std::size_t best(std::size_t filter) const {
     const auto& all = errors[filter];
@@ -118,7 +118,7 @@ std::array<Result, kSpp.size()> measure_scene(const PaperRun& run, const char* n
   return results;
 }
 
-// Of those scenes for which `holds`, by name.
+// The names of the scenes for which `holds` is true.
 template <typename Holds>
 std::vector<std::string> scenes_where(const Results& results, const Holds& holds) {
   std::vector<std::string> names;
@@ -138,14 +138,14 @@ Verdict verdict(const std::vector<std::string>& names) {
   return names.empty() ? Verdict::kNot : Verdict::kInPart;
 }
 
-// For each filter the one setting with the least geometric mean of errors over all scenes.
+// For each filter the setting with the least geometric mean of errors over all scenes.
 std::array<std::size_t, 3> settings_for_all(const Results& results, std::size_t spp) {
   std::array<std::size_t, 3> chosen{};
   for (std::size_t filter = 0; filter < kFilters.size(); ++filter) {
     double least = INFINITY;
     for (std::size_t i = 0; i < kSettings[filter].size(); ++i) {
       double logs = 0.0;
-      // An error below what the references can tell must not win by its sign.
+      // Errors below the precision of the references may be negative; they must not win by that.
       for (const auto& scene : results) {
         logs += std::log(std::max(scene[spp].errors[filter][i], 1e-5 * scene[spp].noisy));
       }
@@ -165,11 +165,12 @@ void claim_order(const Results& results, PaperReport& report) {
       const Result& r = scene[spp];
       return r.least(0) <= std::min(r.least(1), r.least(2));
     });
-    report.claims.push_back({"Fig. 8",
-                             fmt::format("guided filter: least MSE of three, each at its best "
-                                         "setting for the scene, {} spp",
-                                         kSpp[spp]),
-                             kTheirs[spp], listed(at_best), verdict(at_best)});
+    report.claims.push_back(
+        {"Fig. 8",
+         fmt::format("guided filter has the least MSE of three filters, each at its best "
+                     "setting for the scene, {} spp",
+                     kSpp[spp]),
+         kTheirs[spp], listed(at_best), verdict(at_best)});
     const auto chosen = settings_for_all(results, spp);
     const auto at_chosen = scenes_where(results, [&](const auto& scene) {
       const auto error = [&](std::size_t f) { return scene[spp].errors[f][chosen[f]]; };
@@ -177,10 +178,10 @@ void claim_order(const Results& results, PaperReport& report) {
     });
     report.claims.push_back(
         {"Fig. 8",
-         fmt::format("the same with one setting for all scenes, {} spp: radius {}, radius {}, {} "
-                     "passes",
-                     kSpp[spp], kSettings[0][chosen[0]], kSettings[1][chosen[1]],
-                     kSettings[2][chosen[2]]),
+         fmt::format(
+             "guided filter has the least MSE with one setting for all scenes, {} spp: radius "
+             "{}, radius {}, {} passes",
+             kSpp[spp], kSettings[0][chosen[0]], kSettings[1][chosen[1]], kSettings[2][chosen[2]]),
          "-", listed(at_chosen), verdict(at_chosen)});
   }
 }
@@ -193,7 +194,7 @@ void claim_rest(const Results& results, PaperReport& report) {
     factors.push_back(fmt::format("{} {:.0f}", kScenes[s], factor));
     least = std::min(least, factor);
   }
-  report.claims.push_back({"Fig. 8", "MSE falls to a fraction, 1 spp: unfiltered over guided",
+  report.claims.push_back({"Fig. 8", "MSE without filter / MSE of the guided filter, 1 spp",
                            "11 to 118", fmt::format("{}", fmt::join(factors, ", ")),
                            least >= 11.0  ? Verdict::kHeld
                            : least >= 2.0 ? Verdict::kInPart
@@ -202,12 +203,11 @@ void claim_rest(const Results& results, PaperReport& report) {
     const auto& g = scene[0].guides;
     return g[2] <= std::min(g[0], g[1]);
   });
-  report.claims.push_back({"Fig. 5", "only normals and depth together suffice: least MSE, 1 spp",
+  report.claims.push_back({"Fig. 5", "normals and depth together have the least MSE, 1 spp",
                            "pictures only", listed(full), verdict(full)});
   const auto shrinks =
       scenes_where(results, [](const auto& scene) { return scene[1].best(0) < scene[0].best(0); });
-  report.claims.push_back({"Section 5",
-                           "more samples let the kernel shrink: best radius, 4 against 1",
+  report.claims.push_back({"Section 5", "the best radius is smaller at 4 spp than at 1 spp",
                            "in words", listed(shrinks), verdict(shrinks)});
 }
 
@@ -231,7 +231,7 @@ PageSection scene_section(const char* name, const std::array<Result, kSpp.size()
   }
   for (std::size_t spp = 0; spp < kSpp.size(); ++spp) {
     PagePlot plot{fmt::format("Error against reach, {} spp", kSpp[spp]),
-                  "an a-trous filter of n passes reaches 2 (2^n - 1) pixels",
+                  "n passes of an a-trous filter reach 2 (2^n - 1) pixels",
                   {"reach, pixels", true},
                   {"mean squared error", true},
                   {}};

@@ -1,4 +1,4 @@
-// The parts of rerunning Bauszat 2011; each adds its claims and sections.
+// The rerun of Bauszat 2011 in parts; each adds its claims and sections to the report.
 #pragma once
 
 #include "sequences/lab/paper.h"

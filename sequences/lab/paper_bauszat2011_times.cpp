@@ -1,4 +1,4 @@
-// Tables 1 and 2 of Bauszat 2011: what rendering and filtering cost.
+// Tables 1 and 2 of Bauszat 2011: times of rendering and filtering.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -36,8 +36,8 @@ double of_filter(SpatialFilter& filter, const Frame& frame) {
   return clock.lap().cpu_ms;
 }
 
-// The least of some runs by turns, so that a busy moment of the machine is not taken for the price
-// of a radius; memory is touched for the first time in the first.
+// The least CPU time of several rounds. Settings take turns, so that a busy moment of the machine
+// does not count against one of them; the first round also touches new memory.
 std::vector<double> guided_ms(const Frame& frame, const std::vector<GuidedOptions>& settings) {
   std::vector<std::unique_ptr<GuidedSpatial>> filters;
   for (const GuidedOptions& options : settings) {
@@ -77,7 +77,7 @@ struct Times {
 void claim_times(const Times& t, PaperReport& report) {
   const double flat = t.by_radius[3] / t.by_radius[0];
   report.claims.push_back(
-      {"Table 2", "time of the guided filter is the same for all kernel sizes: radius 32 over 8",
+      {"Table 2", "time of the guided filter does not depend on the radius: radius 32 / radius 8",
        "1 (in words)", fmt::format("{:.2f}", flat),
        flat <= 1.15  ? Verdict::kHeld
        : flat <= 1.5 ? Verdict::kInPart
@@ -85,23 +85,23 @@ void claim_times(const Times& t, PaperReport& report) {
   const double cross = t.bilateral[2] / t.bilateral[0], wavelets = t.atrous[2] / t.atrous[0];
   report.claims.push_back(
       {"Table 2",
-       "that of the others grows: cross bilateral, radius 32 over 16; a-trous, 6 "
-       "passes over 4",
+       "time of other filters grows: cross bilateral, radius 32 / 16; a-trous, 6 passes / 4",
        "3.96; 1.52", fmt::format("{:.2f}; {:.2f}", cross, wavelets),
        cross > 2.0 && wavelets > 1.2 ? Verdict::kHeld : Verdict::kNot});
   const double faster = t.bilateral[1] / t.guided[2];
-  report.claims.push_back({"Table 2", "4 guides against cross bilateral, both at radius 24",
-                           "12.5 times as fast", fmt::format("{:.1f} times", faster),
-                           faster >= 12.5  ? Verdict::kHeld
-                           : faster >= 1.0 ? Verdict::kInPart
-                                           : Verdict::kNot});
-  report.claims.push_back({"Table 2", "4 guides are slower than 4 passes of a-trous", "1.48 times",
-                           fmt::format("{:.2f} times", t.guided[2] / t.atrous[0]),
+  report.claims.push_back(
+      {"Table 2", "guided filter with 4 guides is faster than cross bilateral, both radius 24",
+       "12.5 times as fast", fmt::format("{:.1f} times", faster),
+       faster >= 12.5  ? Verdict::kHeld
+       : faster >= 1.0 ? Verdict::kInPart
+                       : Verdict::kNot});
+  report.claims.push_back({"Table 2", "guided filter with 4 guides is slower than 4 a-trous passes",
+                           "1.48 times", fmt::format("{:.2f} times", t.guided[2] / t.atrous[0]),
                            t.guided[2] >= t.atrous[0] ? Verdict::kHeld : Verdict::kNot});
 }
 
 PageTable filter_table(const Times& t) {
-  PageTable table{"CPU ms a frame, 1024x768",
+  PageTable table{"CPU ms per frame, 1024x768",
                   "The paper: GPU. Here: CPU time of all threads. Guided filter: radius 24.",
                   "filter",
                   {{"paper"}, {"here"}},
@@ -156,7 +156,7 @@ void bauszat_filter_times(const PaperRun& run, PaperReport& report) {
 void bauszat_rendering_times(const PaperRun& run, PaperReport& report) {
   const PaperScene scene("atrium", Perturbation::kNone, run.extent);
   PageTable table{
-      fmt::format("Rendering, ms a frame, {}x{}", run.extent.width, run.extent.height),
+      fmt::format("Rendering, ms per frame, {}x{}", run.extent.width, run.extent.height),
       "The paper: 1024x768 on its GPU, its scenes. Here: CPU time of all threads, atrium, "
       "with the guide ray and one sample of direct light.",
       "bounces, samples",
@@ -169,7 +169,7 @@ void bauszat_rendering_times(const PaperRun& run, PaperReport& report) {
     LiveSource source = scene.source({.spp = row.spp, .direct_spp = 1, .bounces = row.bounces},
                                      {run.frames.front(), run.frames.front()});
     Frame frame;
-    // The first frame builds the scene.
+    // The first frame also builds the scene.
     if (!source.next(frame)) throw std::logic_error("no frame");
     StageClock clock;
     if (!source.next(frame)) throw std::logic_error("no frame");
@@ -177,12 +177,13 @@ void bauszat_rendering_times(const PaperRun& run, PaperReport& report) {
     table.rows.push_back(
         {fmt::format("{}, {}", row.bounces, row.spp), {row.ajax, row.sibenik, row.dragon, ms[i]}});
   }
-  report.claims.push_back({"Table 1", "four samples cost little more than four times one",
+  report.claims.push_back({"Table 1",
+                           "four samples take little more than four times as long as one",
                            "4.05 to 4.14", fmt::format("{:.2f}", ms[1] / ms[0]),
                            ms[1] <= 4.4 * ms[0] ? Verdict::kHeld : Verdict::kNot});
-  report.claims.push_back({"Table 1", "a second bounce costs less than the first: 2 over 1",
-                           "1.63 to 1.83", fmt::format("{:.2f}", ms[2] / ms[1]),
-                           ms[2] < 2.0 * ms[1] ? Verdict::kHeld : Verdict::kNot});
+  report.claims.push_back(
+      {"Table 1", "a second bounce takes less time than the first: 2 bounces / 1", "1.63 to 1.83",
+       fmt::format("{:.2f}", ms[2] / ms[1]), ms[2] < 2.0 * ms[1] ? Verdict::kHeld : Verdict::kNot});
   report.sections.push_back({"Table 1: rendering", "", {}, {std::move(table)}, {}});
 }
 

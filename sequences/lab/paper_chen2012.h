@@ -1,4 +1,4 @@
-// The parts of rerunning Chen 2012; each adds its claims and one section.
+// The rerun of Chen 2012 in parts; each adds its claims and one section to the report.
 #pragma once
 
 #include "sequences/lab/paper.h"

@@ -1,4 +1,4 @@
-// Fig. 15 of Chen 2012: what incremental PCA learns.
+// Fig. 15 of Chen 2012: the bases of incremental PCA.
 #include <fmt/format.h>
 
 #include <Eigen/SVD>
@@ -47,7 +47,7 @@ class Learner {
   int number_ = 0;
 };
 
-// A column a frame: all channels of usable surface pixels, other values 0.
+// One column per frame: all channels of usable surface pixels; other values are 0.
 Eigen::MatrixXd data_matrix(const std::vector<Frame>& frames) {
   const Extent extent = frames.front().extent();
   Eigen::MatrixXd data(static_cast<Eigen::Index>(3 * extent.pixels()),
@@ -82,7 +82,7 @@ Eigen::MatrixXd basis_matrix(const BasisField& bases) {
   return matrix;
 }
 
-// Share of the data's energy that is left outside the span of the columns.
+// Share of the data's energy outside the span of the columns.
 double left_over(const Eigen::MatrixXd& data, const Eigen::MatrixXd& columns) {
   const Eigen::BDCSVD<Eigen::MatrixXd> span(columns, Eigen::ComputeThinU);
   const Eigen::MatrixXd& u = span.matrixU();
@@ -118,9 +118,9 @@ void chen_bases(const PaperRun& run, PaperReport& report) {
   }
   const double ratio = left_over(data, learned) / left_over(data, batch);
   report.claims.push_back(
-      {"Fig. 15", "4 bases of CCIPCA after 70 epochs rebuild frames as batch PCA's do",
+      {"Fig. 15", "4 bases of CCIPCA after 70 epochs reconstruct frames like those of batch PCA",
        "similar (pictures only)",
-       fmt::format("{:.3f} of its residual energy, least cosine of bases {:.3f}", ratio, least),
+       fmt::format("{:.3f} times its residual energy, least cosine of bases {:.3f}", ratio, least),
        ratio > 1.05    ? Verdict::kNot
        : least >= 0.95 ? Verdict::kHeld
                        : Verdict::kInPart});

@@ -1,4 +1,4 @@
-// Fig. 5 of Chen 2012: how soon newly seen pixels recover.
+// Fig. 5 of Chen 2012: frames until newly seen pixels have recovered.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -15,15 +15,15 @@ namespace eigenlight {
 namespace {
 
 constexpr Extent kExtent{64, 36};
-// The paper does not say how many it has in the figure.
+// The paper does not give the number of bases in the figure.
 constexpr std::array<int, 3> kBases{1, 3, 5};
-// The paper does not say how long the ball is in the way; by then its weights are 3 / 48.
+// The paper does not say how long the ball hides the wall. After 48 frames its weights are 3 / 48.
 constexpr int kHidden = 48, kSeen = 72;
 constexpr int kCardLeft = 24, kCardRight = 40;
 constexpr std::uint32_t kSeeds = 16;
 constexpr double kRecovered = 0.1;
 
-// A card before a wall with light of its own, gone from frame kHidden on.
+// A card with its own light hides a part of the wall until frame kHidden.
 AnalyticOptions card(std::uint32_t seed) {
   AnalyticOptions options{.extent = kExtent, .frames = kHidden + kSeen, .seed = seed};
   options.edit = [](Frame& frame) {
@@ -40,9 +40,9 @@ AnalyticOptions card(std::uint32_t seed) {
   return options;
 }
 
-using Sums = std::array<std::vector<Planes<3>>, 2>;  // of half the seeds each, by frame
+using Sums = std::array<std::vector<Planes<3>>, 2>;  // for each half of the seeds, for each frame
 
-// What is to be expected of a frame is the mean over seeds: a method's noise is not its bias.
+// The expected picture of each frame: the mean over seeds, in which noise cancels and bias stays.
 Sums mean_pictures(int bases, const ChenOptions& parts) {
   Sums sums;
   for (auto& half : sums) {
@@ -51,7 +51,7 @@ Sums mean_pictures(int bases, const ChenOptions& parts) {
   for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
     AnalyticSource source(card(seed));
     Chen2012 method({kExtent, bases}, parts);
-    // Further samples are another remedy: Fig. 6.
+    // Without extra samples, which are another remedy (Fig. 6).
     std::vector<Frame> frames(kHidden + kSeen);
     for (Frame& frame : frames) {
       if (!source.next(frame)) throw std::logic_error("a source ends before its last frame");
@@ -70,14 +70,15 @@ Sums mean_pictures(int bases, const ChenOptions& parts) {
   return sums;
 }
 
-// Root of the mean of bias^2 / truth^2 where the card was. The halves are independent, so that what
-// noise is left in them drops out; where it leaves less than nothing, 0.
+// Root of the mean of bias^2 / truth^2 where the card was. The halves are independent, so that
+// their noise cancels; a negative mean gives 0.
 PlotSeries relative_bias(int bases, const ChenOptions& parts) {
   const Sums means = mean_pictures(bases, parts);
   const AnalyticSource truth(card(0));
-  PlotSeries series{fmt::format("{} for {} bases",
-                                parts.per_pixel_weights ? "weights by pixel" : "one weight", bases),
-                    {}};
+  PlotSeries series{
+      fmt::format("{} for {} bases", parts.per_pixel_weights ? "weights per pixel" : "one weight",
+                  bases),
+      {}};
   for (int i = 0; i < kSeen; ++i) {
     double sum = 0.0;
     for (int y = 0; y < kExtent.height; ++y) {
@@ -96,7 +97,7 @@ PlotSeries relative_bias(int bases, const ChenOptions& parts) {
   return series;
 }
 
-// Frames until the bias stays below kRecovered; one more than there are if it does not.
+// Frames until the bias stays below kRecovered; kSeen + 1 if it does not.
 int frames_to_recover(const PlotSeries& series) {
   int frames = kSeen + 1;
   for (auto point = series.points.rbegin(); point != series.points.rend(); ++point) {
@@ -117,7 +118,7 @@ void chen_disocclusion(const PaperRun& run, PaperReport& report) {
   std::vector<std::string> counts;
   std::size_t held = 0, faster = 0;
   for (const int bases : kBases) {
-    run.step(fmt::format("Fig. 5, a card that goes away, {} bases", bases));
+    run.step(fmt::format("Fig. 5, disocclusion, {} bases", bases));
     series.push_back(relative_bias(bases, {.basis_filter = false}));
     series.push_back(relative_bias(bases, {.per_pixel_weights = false, .basis_filter = false}));
     const int fast = frames_to_recover(series.end()[-2]);
@@ -129,7 +130,7 @@ void chen_disocclusion(const PaperRun& run, PaperReport& report) {
   report.claims.push_back(
       {"Fig. 5",
        fmt::format("frames until newly seen pixels have recovered (here: a bias below {:.0f} %), "
-                   "weights by pixel against one weight",
+                   "with weights per pixel and with one weight",
                    100.0 * kRecovered),
        "5 against 50", fmt::format("{}", fmt::join(counts, ", ")),
        held == kBases.size() ? Verdict::kHeld
@@ -137,12 +138,12 @@ void chen_disocclusion(const PaperRun& run, PaperReport& report) {
                              : Verdict::kNot});
   PagePlot plot{
       "Bias of newly seen pixels",
-      fmt::format("A card before a wall of known light is gone after {} frames. Root of the "
-                  "mean squared difference of what is to be expected, the mean over {} "
-                  "seeds, from the truth, over the truth; black would be 1. 3 samples a "
-                  "pixel, no further samples, no basis filter.",
+      fmt::format("A card that hides a wall of known light disappears after {} frames. Root of the "
+                  "mean squared relative difference between the expected picture (mean over {} "
+                  "seeds) and the truth; a black picture has 1. 3 samples per pixel, no extra "
+                  "samples, no basis filter.",
                   kHidden, kSeeds),
-      {"frames since they are seen"},
+      {"frames since the card disappeared"},
       {"relative bias", true},
       std::move(series)};
   report.sections.push_back({"Fig. 5: disocclusion", "", {std::move(plot)}, {}, {}});

@@ -1,4 +1,4 @@
-// Fig. 7 and 10 of Chen 2012: flicker and error of statistical filtering and its rivals.
+// Fig. 7 and 10 of Chen 2012: flicker and errors of statistical filtering and its rivals.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,20 +13,20 @@
 namespace eigenlight {
 namespace {
 
-// Chen 2012, 4.2: flicker is barely seen below.
+// Chen 2012, 4.2: flicker is hardly visible below this value.
 constexpr double kUnseen = 2.5e-5;
 constexpr int kBases = 5;
 constexpr int kSpp = 3;
 constexpr std::array<int, 4> kFlickerSpp{3, 10, 32, 64};
-// Pairs of frames that flicker is a mean over.
+// Pairs of frames over which flicker is averaged.
 constexpr std::size_t kPairs = 2;
-// Frames between references of Fig. 10, and samples of each of the two.
+// Frames between references of Fig. 10, and samples of each of the two references.
 constexpr std::size_t kReferenceStep = 4;
 constexpr int kReferenceSpp = 32;
 
 struct Rival {
   std::string name;
-  int radius = 0;  // of a joint bilateral filter; 0: the method of that name
+  int radius = 0;  // of a joint bilateral filter; 0: the method called `name`
 };
 const std::array<Rival, 5> kRivals{
     {{"chen2012"}, {"eigenlight"}, {"hems2010"}, {"bilateral 11x11", 5}, {"bilateral 17x17", 8}}};
@@ -39,7 +39,7 @@ std::unique_ptr<Denoiser> make_rival(const Rival& rival, Extent extent) {
                                         std::make_unique<CrossBilateral>(extent, window));
 }
 
-// Over the last pairs of the sequence.
+// Flicker over the last pairs of the sequence.
 double flicker(const std::vector<Planes<3>>& pictures, const Plane<std::uint32_t>& surface) {
   double sum = 0.0;
   for (std::size_t i = pictures.size() - kPairs; i < pictures.size(); ++i) {
@@ -48,7 +48,7 @@ double flicker(const std::vector<Planes<3>>& pictures, const Plane<std::uint32_t
   return sum / static_cast<double>(kPairs);
 }
 
-// The least of the sample counts at which a filter's flicker is unseen.
+// The smallest sample count at which a filter's flicker is invisible.
 std::string samples_needed(const PlotSeries& series) {
   for (const PlotPoint& point : series.points) {
     if (point.y < kUnseen) return fmt::format("{:.0f}", point.x);
@@ -60,21 +60,22 @@ void claim_flicker(const std::vector<PlotSeries>& series, PaperReport& report) {
   const auto verdict = [](bool held) { return held ? Verdict::kHeld : Verdict::kNot; };
   const double chen = series[0].points.front().y;
   report.claims.push_back(
-      {"Fig. 7", "at 3 rays flicker is under 2.5e-5", "under 2.5e-5",
+      {"Fig. 7", "flicker is below 2.5e-5 at 3 rays", "below 2.5e-5",
        fmt::format("{:.2g}; `eigenlight` {:.2g}", chen, series[1].points.front().y),
        verdict(chen < kUnseen)});
-  report.claims.push_back({"Fig. 7", "rays at which a bilateral filter of 11x11 gets there",
-                           "more than 64", samples_needed(series[3]),
-                           verdict(series[3].points.back().y >= kUnseen)});
-  report.claims.push_back({"Fig. 7", "rays at which one of 17x17 gets there", "more than 32",
-                           samples_needed(series[4]), verdict(series[4].points[2].y >= kUnseen)});
+  report.claims.push_back(
+      {"Fig. 7", "rays at which flicker of an 11x11 bilateral filter is below 2.5e-5",
+       "more than 64", samples_needed(series[3]), verdict(series[3].points.back().y >= kUnseen)});
+  report.claims.push_back(
+      {"Fig. 7", "rays at which flicker of a 17x17 bilateral filter is below 2.5e-5",
+       "more than 32", samples_needed(series[4]), verdict(series[4].points[2].y >= kUnseen)});
   const double best = std::min(series[3].points.front().y, series[4].points.front().y);
-  report.claims.push_back({"Fig. 7", "at 3 rays less flicker than bilateral filters", "less",
-                           fmt::format("{:.2g} times the better one's", chen / best),
+  report.claims.push_back({"Fig. 7", "less flicker than bilateral filters at 3 rays", "less",
+                           fmt::format("{:.2g} times that of the better filter", chen / best),
                            verdict(chen < best)});
 }
 
-// Mean squared error of each picture that has references.
+// Mean squared errors of the pictures that have references.
 PlotSeries errors(const std::string& name, const std::vector<Planes<3>>& pictures,
                   const std::array<std::vector<Planes<3>>, 2>& truth,
                   const std::vector<Frame>& frames) {
@@ -115,7 +116,7 @@ void claim_error(const std::vector<PlotSeries>& series, PaperReport& report) {
   }
   report.claims.push_back({"Fig. 10",
                            "lower MSE than spatio-temporal upsampling and bilateral filters of "
-                           "11x11 and 17x17, light moving",
+                           "11x11 and 17x17 in moving light",
                            "lowest of four (plot only)", ours,
                            beaten == 3  ? Verdict::kHeld
                            : beaten > 0 ? Verdict::kInPart
@@ -127,16 +128,16 @@ void claim_error(const std::vector<PlotSeries>& series, PaperReport& report) {
 void chen_flicker(const PaperRun& run, PaperReport& report) {
   const PaperScene scene("atrium", Perturbation::kNone, run.extent);
   PagePlot plot{"Flicker against samples",
-                fmt::format("mean squared change from frame to frame, camera and light at rest, "
-                            "exposed, over the last {} pairs; barely seen below {}",
+                fmt::format("mean squared change from frame to frame, static camera and light, "
+                            "exposed, over the last {} pairs; hardly visible below {}",
                             kPairs, kUnseen),
-                {"samples a pixel", true},
+                {"samples per pixel", true},
                 {"flicker", true},
                 {}};
   for (const Rival& rival : kRivals) plot.series.push_back({rival.name, {}});
   for (const int spp : kFlickerSpp) {
     run.step(fmt::format("Fig. 7, {} samples", spp));
-    // Filters without memory need no frames before those that are measured.
+    // Filters without history need only the measured frames.
     const bool all = spp == kSpp;
     const std::vector<int> frames(all ? run.frames.begin() : run.frames.end() - kPairs - 1,
                                   run.frames.end());
@@ -159,8 +160,8 @@ void chen_error(const PaperRun& run, PaperReport& report) {
   run.step("Fig. 10, filters");
   const std::vector<Frame> noisy = scene.render(kSpp, run.frames);
   PagePlot plot{"Error over frames",
-                fmt::format("{} samples a pixel, camera at rest, light moving; against two "
-                            "references of {} samples, so that their noise drops out",
+                fmt::format("{} samples per pixel, static camera, moving light; against two "
+                            "references of {} samples, whose noise cancels",
                             kSpp, kReferenceSpp),
                 {"frame"},
                 {"mean squared error", true},

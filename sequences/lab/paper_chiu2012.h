@@ -1,4 +1,4 @@
-// The parts of rerunning Chiu 2012; each adds its claims and sections.
+// The rerun of Chiu 2012 in parts; each adds its claims and sections to the report.
 #pragma once
 
 #include "sequences/lab/paper.h"

@@ -1,5 +1,5 @@
-// The papers whose claims are measured again: each by its own file, or files of its name, and in
-// papers() (paper.cpp) by one line.
+// The papers whose claims are measured again. Each has files of its name and a line in papers()
+// (paper.cpp).
 #pragma once
 
 #include "sequences/lab/paper.h"

@@ -1,4 +1,4 @@
-// Parts of the rerun of Xu 2024; each appends its claims and its section to the report.
+// The rerun of Xu 2024 in parts; each adds its claims and sections to the report.
 #pragma once
 
 #include "sequences/lab/paper.h"
@@ -9,13 +9,13 @@ namespace eigenlight {
 /// untrained weights and in two passes of one dimension.
 void xu_quality(const PaperRun& run, PaperReport& report);
 
-/// What the input does to these figures: raw samples, compressed ones, more of them, accumulated.
+/// How these figures depend on the input: raw or compressed samples, more samples, accumulation.
 void xu_inputs(const PaperRun& run, PaperReport& report);
 
-/// Fig. 4 and 6: what the range function does on the way down and on the way up.
+/// Fig. 4 and 6: the effect of the range function on the way down and on the way up.
 void xu_parts(const PaperRun& run, PaperReport& report);
 
-/// Fig. 12 and Table 2: time against the radius and against other filters.
+/// Fig. 12 and Table 2: time by radius, and times of other filters.
 void xu_times(const PaperRun& run, PaperReport& report);
 
 }  // namespace eigenlight

@@ -11,10 +11,10 @@
 namespace eigenlight {
 namespace {
 
-// Side of a cube of one roughness; the scenes are some meters wide.
+// Side of a cube of constant roughness; the scenes are a few meters wide.
 constexpr float kCube = 0.7f;
 constexpr std::array<float, 2> kRoughness{0.3f, 0.75f};  // sqrt(alpha)
-// Largest circle of confusion, and circle per relative distance from what is in focus, pixels.
+// Largest circle of confusion, and circle per relative distance from the focus, in pixels.
 constexpr float kLargestCircle = 32.0f, kCircleScale = 48.0f;
 constexpr int kSpheres = 400;
 constexpr float kCloudDepth = 5.0f;
@@ -140,9 +140,9 @@ PyramidUse<DepthOfFieldEdge> depth_of_field_use(const Frame& frame) {
 }
 
 PyramidUse<ParticleEdge> particle_use(Extent extent, std::uint32_t seed) {
-  // z_p |z_p - z_q| sigma_z is 1 at a sphere's radius or so.
+  // z_p |z_p - z_q| sigma_z is about 1 at the radius of a sphere.
   PyramidUse<ParticleEdge> use({.depth_scale = 0.4f, .blur_radius = kUseRadius}, extent);
-  const float radius = static_cast<float>(extent.height) / 16.0f;  // a sphere's, pixels
+  const float radius = static_cast<float>(extent.height) / 16.0f;  // of a sphere, pixels
   const auto number = [&](int sphere, std::uint32_t n) {
     return to_unit(hash_key(seed, sphere, n));
   };
@@ -157,7 +157,7 @@ PyramidUse<ParticleEdge> particle_use(Extent extent, std::uint32_t seed) {
         const float dx = (static_cast<float>(x) + 0.5f - cx) / radius;
         const float dy = (static_cast<float>(y) + 0.5f - cy) / radius;
         if (dx * dx + dy * dy >= 1.0f) continue;
-        // Of a sphere half a unit wide.
+        // Depth of a sphere of radius 0.25.
         const float z = cz - 0.25f * std::sqrt(1.0f - dx * dx - dy * dy);
         float& own = use.attributes(x, y);
         if (own == 0.0f || z < own) own = z;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "frame/bad_file.h"
 #include "frame/random.h"
 #include "render/builtin/builtin_scenes.h"
 #include "render/live_source.h"
@@ -31,8 +32,8 @@ constexpr int kFrameParts = 3;
 Planes<3> crop_middle(const Planes<3>& image, int side, const std::string& name) {
   const Extent extent = image[0].extent();
   if (extent.width < side || extent.height < side) {
-    throw std::runtime_error(fmt::format("{}: {}x{} pixels, expected {} or more on each side", name,
-                                         extent.width, extent.height, side));
+    throw BadFile(fmt::format("{}: {}x{} pixels, expected {} or more on each side", name,
+                              extent.width, extent.height, side));
   }
   const int x0 = (extent.width - side) / 2, y0 = (extent.height - side) / 2;
   Planes<3> middle = make_planes<3>({side, side});

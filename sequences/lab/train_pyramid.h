@@ -48,7 +48,7 @@ struct NamedExample {
 ///
 /// The third, sixth .. painted picture is noise guided by the clean picture, as light is: each
 /// pixel times the mean of 1 and of 4 exponential deviates by turns, mapped to x / (1 + x). Throws
-/// std::runtime_error naming a file that cannot be read or is smaller.
+/// BadFile naming a file that is smaller, std::runtime_error naming one that cannot be read.
 [[nodiscard]] std::vector<NamedExample> make_pyramid_examples(const PyramidPictures& pictures,
                                                               int radius, int side);
 

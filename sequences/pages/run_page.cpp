@@ -9,6 +9,7 @@
 #include "sequences/files/atomic_file.h"
 #include "sequences/pages/run_pictures.h"
 #include "sequences/pages/run_records.h"
+#include "temporal/frame_report.h"
 
 namespace eigenlight {
 namespace {
@@ -124,19 +125,12 @@ PageSection frames_section(const RunRecords& records, const std::vector<int>& fr
 
 // ---- tables
 
-// Counters that the log has and this list has not are shown by their own name.
-std::string skip_text(const std::string& key) {
-  constexpr std::pair<const char*, const char*> kTexts[] = {
-      {"warp", "reprojection: nothing moved"},
-      {"surface", "all steps: tile without a surface"},
-      {"filter", "a-trous passes: variance is low enough"},
-      {"geometry", "edge weights of the first a-trous pass: pixel and taps lie in one plane"},
-      {"guided", "guided filter: tile without young pixels"},
-      {"correction", "correction: no unexpected change of light nearby"}};
-  for (const auto& [name, text] : kTexts) {
-    if (key == name) return text;
+// Counters of other versions of the program are shown by their names.
+std::string skip_text(const std::string& name) {
+  for (const SkipCounter& counter : kSkipCounters) {
+    if (counter.name == name) return std::string(counter.text);
   }
-  return key;
+  return name;
 }
 
 PageTable skip_table(const RunRecords& records, double pixels) {

@@ -38,7 +38,7 @@ CameraPath::CameraPath(std::vector<CameraKey> keys, float frames_per_second)
   check_keys(keys_);
   const float seconds = keys_.back().seconds - keys_.front().seconds;
   length_ = std::max(1, static_cast<int>(std::lround(seconds * frames_per_second)));
-  // Beyond its ends the path comes back: the neighbors of an end are the same, and it stands still.
+  // The path turns back at its ends, so both neighbors of an end are equal and its tangent is 0.
   tangents_.resize(keys_.size(), {glm::vec3(0.0f), glm::vec3(0.0f)});
   for (std::size_t i = 1; i + 1 < keys_.size(); ++i) {
     const CameraKey &before = keys_[i - 1], &after = keys_[i + 1];
@@ -48,8 +48,8 @@ CameraPath::CameraPath(std::vector<CameraKey> keys, float frames_per_second)
 }
 
 CameraPath::View CameraPath::at(int frame) const {
-  const int turn = ((frame % period()) + period()) % period();
-  const int step = std::min(turn, period() - turn);
+  const int phase = ((frame % period()) + period()) % period();
+  const int step = std::min(phase, period() - phase);
   const float start = keys_.front().seconds, end = keys_.back().seconds;
   const float seconds =
       start + (end - start) * (static_cast<float>(step) / static_cast<float>(length_));

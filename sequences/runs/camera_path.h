@@ -1,4 +1,4 @@
-// The way of a camera through its keys.
+// The path of a camera through its keys.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -10,8 +10,8 @@ namespace eigenlight {
 
 /// Catmull-Rom through camera keys, over frames: a cubic Hermite spline whose tangent at a key is
 /// the difference of its neighbors over their time (Catmull and Rom 1974, for keys at any spacing).
-/// At its ends the path stands still and turns back, for ever: frame f and frame f + period() have
-/// the same view, and so have f and -f, counted from the first key.
+/// The camera stops at both ends and turns back: frames f and f + period() have the same view, and
+/// so have f and -f, counted from the first key.
 class CameraPath {
  public:
   /// Throws std::invalid_argument unless there is a key, all are finite, and seconds ascend.
@@ -22,8 +22,8 @@ class CameraPath {
   };
   [[nodiscard]] View at(int frame) const;
 
-  /// Frames from the first key to the last, at least 1; a path that lasts a fraction of a frame
-  /// longer is stretched to whole frames, so that turning back repeats the same views.
+  /// Frames from the first key to the last, at least 1. The path is stretched to whole frames, so
+  /// that the way back has the same views.
   [[nodiscard]] int length() const { return length_; }
   [[nodiscard]] int period() const { return 2 * length_; }
 

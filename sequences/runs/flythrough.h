@@ -1,4 +1,4 @@
-// A scene over time: camera path, and the perturbations that stress a temporal filter.
+// A scene over time: the camera path and its perturbations.
 #pragma once
 
 #include <memory>
@@ -10,11 +10,11 @@ namespace eigenlight {
 
 inline constexpr float kFramesPerSecond = 24.0f;
 
-/// The flythrough of a scene: Catmull-Rom through the camera keys at kFramesPerSecond, there and
-/// back again for ever, so that every frame number has a view. Adds the objects of
-/// Perturbation::kObjects to `scene` (meshes, materials, instances), whose paths are found by probe
-/// rays along the camera path. Lights: perturb_lights.h. Everything is a function of the frame
-/// number alone. Throws std::invalid_argument on a scene without camera keys or triangles.
+/// The flythrough of a scene: Catmull-Rom through the camera keys at kFramesPerSecond, back and
+/// forth (camera_path.h), so that every frame number has a view. Perturbation::kObjects adds its
+/// objects to `scene` (meshes, materials, instances; perturb_objects.h); lights: perturb_lights.h.
+/// Everything depends on the frame number alone. Throws std::invalid_argument for a scene without
+/// camera keys or triangles.
 [[nodiscard]] std::unique_ptr<Animation> make_flythrough(Scene& scene, Perturbation perturbation,
                                                          Extent extent);
 

@@ -8,9 +8,9 @@
 namespace eigenlight {
 namespace {
 
-/// The lowest place, in degrees, that a sun sweeps around: 5 more than the sweep.
+/// The lowest elevation, in degrees, that a sun sweeps around: 5 more than the sweep.
 constexpr float kLowestSun = kLightSweep + 5.0f;
-/// Share of the lobe in the light of swinging emissive triangles; under 1, so that no direction
+/// Share of the lobe in the light of swinging emissive triangles; below 1, so that no direction
 /// goes dark.
 constexpr float kLobe = 0.8f;
 
@@ -18,7 +18,7 @@ glm::vec3 turned(const glm::vec3& v, float degrees, const glm::vec3& axis) {
   return glm::vec3(glm::rotate(glm::mat4(1.0f), glm::radians(degrees), axis) * glm::vec4(v, 0.0f));
 }
 
-/// Unit, at right angles to `up`, and to `v` as well unless that is parallel to it.
+/// A unit vector orthogonal to `up`, and to `v` unless `v` is parallel to `up`.
 glm::vec3 horizontal(const glm::vec3& up, const glm::vec3& v) {
   for (const glm::vec3& other : {v, glm::vec3(0, 0, 1), glm::vec3(1, 0, 0)}) {
     const glm::vec3 axis = cross(up, other);
@@ -27,7 +27,7 @@ glm::vec3 horizontal(const glm::vec3& up, const glm::vec3& v) {
   return {1, 0, 0};
 }
 
-/// `to_light` lifted to at least kLowestSun and then turned by `degrees` against the horizon.
+/// `to_light` raised to at least kLowestSun, then by `degrees`.
 glm::vec3 swept_sun(const glm::vec3& to_light, const glm::vec3& up, float degrees) {
   const glm::vec3 axis = horizontal(up, to_light);
   const float height =
@@ -39,7 +39,7 @@ glm::vec3 swept_sun(const glm::vec3& to_light, const glm::vec3& up, float degree
 
 float mean(const glm::vec3& v) { return (v.x + v.y + v.z) / 3.0f; }
 
-/// Power of all emissive triangles: both sides, so 2 pi A L.
+/// Power of all emissive triangles; they emit on both sides: 2 pi A L.
 float emissive_power(const Scene& scene) {
   float power = 0.0f;
   for (const Instance& instance : scene.instances) {

@@ -1,4 +1,4 @@
-// Light that changes: Perturbation::kLights moves and pulses, Perturbation::kStep jumps.
+// Changing light: under Perturbation::kLights it moves and pulses, under kStep it jumps.
 #pragma once
 
 #include "render/scene/scene.h"
@@ -8,11 +8,11 @@ namespace eigenlight {
 inline constexpr int kLightPeriod = 18;      ///< frames
 inline constexpr float kLightSweep = 20.0f;  ///< degrees to each side
 inline constexpr float kLightPulse = 0.6f;   ///< of the strength, up and down
-/// Factor of the step, to taste: a curtain drawn open. Large against the noise of an image's mean.
+/// Factor of the step, by taste: a curtain drawn open. Large against the noise of an image's mean.
 inline constexpr float kLightStep = 3.0f;
 
-/// What is perturbed in a scene: all suns; without one the rect, the sphere or the emissive
-/// triangles (all of them together) of greatest power; without these, sky and environment.
+/// The light that is perturbed: all suns; without suns the rect, the sphere or all emissive
+/// triangles together, whichever has the greatest power; without these, sky and environment.
 struct MainLight {
   enum class Kind { kSuns, kRect, kSphere, kEmissive, kSky };
   Kind kind = Kind::kSky;
@@ -20,18 +20,17 @@ struct MainLight {
 };
 [[nodiscard]] MainLight main_light(const Scene& scene);
 
-/// The lights of a scene over frames. All suns sweep kLightSweep to both sides of their place
-/// against the horizon (one that stands lower than 25 degrees sweeps around 25, to stay above it)
-/// and their irradiance pulses by kLightPulse, a quarter of a period ahead of the sweep. Other main
-/// lights are treated so: a rect tilts about half_u, a sphere swings like a pendulum three radii
-/// long, emissive triangles get a lobe that swings about the downward axis, sky and environment
-/// only pulse.
+/// The lights of a scene over frames. Suns sweep up and down by kLightSweep (a sun below 25 degrees
+/// sweeps around 25 degrees, to stay above the horizon), and their irradiance pulses by
+/// kLightPulse, a quarter of a period ahead of the sweep. Other main lights pulse as well: a rect
+/// tilts about half_u, a sphere swings like a pendulum three radii long, emissive triangles get a
+/// lobe that swings about the downward axis, sky and environment only pulse.
 class LightPerturbation {
  public:
-  /// Keeps what it needs of `scene`.
+  /// Copies the lights of `scene`.
   explicit LightPerturbation(const Scene& scene);
 
-  /// Repeats after kLightPeriod frames, which may be negative.
+  /// Repeats after kLightPeriod frames; `frame` may be negative.
   [[nodiscard]] Lights at(int frame) const;
 
  private:
@@ -40,7 +39,7 @@ class LightPerturbation {
   glm::vec3 up_;
 };
 
-/// The lights of a scene whose main light shines kLightStep times as bright from one frame on.
+/// The lights of a scene whose main light is kLightStep times as bright from `frame` on.
 class LightStep {
  public:
   LightStep(const Scene& scene, int frame);

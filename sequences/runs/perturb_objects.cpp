@@ -12,26 +12,25 @@
 namespace eigenlight {
 namespace {
 
-/// How an object crosses the view. Taste, but that heights and kRadius keep the two cones apart in
+/// How an object crosses the view. Values by taste; heights and kRadius keep the two cones apart in
 /// fields of view up to about 70 degrees.
 struct Crossing {
-  float frames;    ///< of one crossing there and back, about
-  float phase;     ///< of a crossing
-  float height;    ///< of half the view's height, up
-  float fraction;  ///< of the free way
+  float frames;    ///< approximate length of one crossing back and forth
+  float phase;     ///< [0, 1] of a crossing
+  float height;    ///< above the center, in halves of the view's height
+  float fraction;  ///< of the free distance
 };
 constexpr std::array<Crossing, ObjectPerturbation::kCount> kCrossings{
     {{44.0f, 0.0f, 0.32f, 0.45f}, {58.0f, 0.3f, -0.36f, 0.6f}}};
 constexpr float kReach = 0.8f;    ///< of half the view's width, to each side
 constexpr float kRadius = 0.24f;  ///< of half the view's smaller side
-constexpr int kWindow = 12;       ///< frames to each side over which the way is evened out
+constexpr int kWindow = 12;       ///< frames to each side over which distances are smoothed
 
-/// Distances further than this share of the scene's diagonal are as good as free.
+/// Free distances are cut off at this share of the scene's diagonal.
 constexpr float kFarthest = 0.5f;
 
-/// Lowest value within kWindow frames to each side of each frame, then the mean of those over the
-/// same window: smooth, and nowhere above `values`, as each term of the mean is below it. Frames
-/// are a ring.
+/// The minimum over kWindow frames to each side, then the mean of the minima over the same window:
+/// smooth, and nowhere above `values`. Frames form a ring.
 std::vector<float> lower_envelope(const std::vector<float>& values) {
   const int count = static_cast<int>(values.size());
   const auto at = [count](const std::vector<float>& ring, int i) {
@@ -61,7 +60,7 @@ void add_object(Scene& scene, Mesh mesh, const glm::vec3& color) {
   scene.meshes.push_back(std::move(mesh));
 }
 
-/// Both fit into the unit ball.
+/// Both objects fit into the unit ball.
 void add_objects(Scene& scene) {
   MeshBuilder builder;
   MeshBuilder::Lathe sphere{.profile = {}, .segments = 48, .foot = glm::vec3(0.0f)};
@@ -107,7 +106,7 @@ glm::vec3 ObjectPerturbation::direction(std::size_t i, int frame) const {
   const Crossing& crossing = kCrossings[i];
   const CameraPath::View view = path_.at(frame);
   const Camera camera = look_at(view.eye, view.look_at, up_, fov_y_, extent_);
-  // A whole number of crossings in the period of the path, so that everything repeats with it.
+  // A whole number of crossings per period of the path, so that all repeats with it.
   const float period = static_cast<float>(path_.period());
   const float crossings = std::max(1.0f, std::round(period / crossing.frames));
   const float turn = static_cast<float>(wrapped(frame)) / period * crossings + crossing.phase;
@@ -127,7 +126,7 @@ std::vector<glm::mat4> ObjectPerturbation::at(int frame) const {
   std::vector<glm::mat4> poses;
   for (std::size_t i = 0; i < kCount; ++i) {
     const Ball here = ball(i, frame);
-    // Two turns in the time of the path; the ball's are not seen.
+    // Two rotations per period of the path.
     const float spin = 2.0f * glm::two_pi<float>() * static_cast<float>(wrapped(frame)) /
                        static_cast<float>(path_.period());
     glm::mat4 pose = glm::translate(glm::mat4(1.0f), here.center);

@@ -15,12 +15,12 @@
 namespace eigenlight {
 namespace {
 
-// The upper half of all seeds belongs to references, so that no reference shares a sample with what
-// is measured against it.
+// References have the upper half of all seeds, so that no reference shares a sample with an image
+// that is measured against it.
 constexpr std::int64_t kSeeds = std::int64_t{1} << 31;
 constexpr std::uint32_t kReferenceSeeds = 0x80000000U;
 
-// Samples of direct light, a third of the rays of a run at 3 spp: only for layers that show it.
+// Samples of direct light (a third of the rays of a run at 3 spp): 0 unless a layer shows it.
 int direct_samples(const std::vector<Layer>& layers, bool is_reference, int usual) {
   const bool shown = std::any_of(layers.begin(), layers.end(), [](Layer layer) {
     return layer == Layer::kColor || layer == Layer::kDirect;
@@ -29,8 +29,8 @@ int direct_samples(const std::vector<Layer>& layers, bool is_reference, int usua
   return is_reference ? kReferenceDirectSpp : usual;
 }
 
-// Refuses early what would end in the kernel killing the process. Two frames, output and the
-// encoded file take about 350 bytes a pixel, a basis twice three floats.
+// Without this check the kernel might kill the process. Two frames, output and the encoded file
+// take about 350 bytes per pixel, a basis twice three floats.
 void check_memory(Extent extent, int bases) {
   const double needed = static_cast<double>(extent.pixels()) * (350.0 + 24.0 * bases);
   const double present =

@@ -1,4 +1,4 @@
-// The options of `eigenlight render`, as given and as checked.
+// The options of `eigenlight render`, before and after checking.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 #include "render/live_source.h"
 #include "sequences/runs/flythrough.h"
-#include "sequences/runs/output.h"
+#include "sequences/runs/frame_writer.h"
 
 namespace eigenlight {
 
@@ -19,7 +19,7 @@ inline constexpr int kReferenceSpp = 512;
 /// Of direct light, which has far less noise: eight times the default.
 inline constexpr int kReferenceDirectSpp = 64;
 
-/// As a user gives them.
+/// Options as a user gives them.
 struct RenderSettings {
   std::string scene;
   std::string directory;
@@ -38,7 +38,7 @@ struct RenderSettings {
   bool resume = false;
 };
 
-/// As a run needs them.
+/// Checked options.
 struct RenderPlan {
   RenderOptions render;
   std::vector<int> frames;
@@ -55,8 +55,8 @@ struct RenderPlan {
 /// `640x360`. Throws std::invalid_argument on anything else, or sides beyond [1, kMaxSide].
 [[nodiscard]] Extent parse_size(std::string_view text);
 
-/// Throws std::invalid_argument naming the option, what was given and what was expected; also when
-/// frames of that size cannot fit the memory of the machine.
+/// Throws std::invalid_argument naming the option, its value and what was expected; also if frames
+/// of that size exceed the memory of the machine.
 [[nodiscard]] RenderPlan make_plan(const RenderSettings& settings);
 
 }  // namespace eigenlight

@@ -4,8 +4,9 @@
 
 #include "sequences/files/atomic_file.h"
 #include "sequences/files/checkpoint.h"
+#include "sequences/files/directory.h"
 #include "sequences/files/file_pattern.h"
-#include "sequences/runs/run_log.h"
+#include "sequences/runs/run_description.h"
 
 namespace eigenlight {
 namespace {
@@ -27,12 +28,7 @@ void load(const std::filesystem::path& file, const Checkpoint& checkpoint, Denoi
 
 RunDirectory::RunDirectory(std::filesystem::path path, std::string run)
     : path_(std::move(path)), run_(std::move(run)) {
-  std::error_code error;
-  std::filesystem::create_directories(path_, error);
-  if (!std::filesystem::is_directory(path_)) {
-    throw std::runtime_error(fmt::format("{}: cannot make the directory: {}", path_.string(),
-                                         error ? error.message() : "Not a directory"));
-  }
+  make_directory(path_);
 }
 
 void RunDirectory::begin() const {

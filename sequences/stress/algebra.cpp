@@ -1,4 +1,4 @@
-// Frames and bases that leave the algebra little to work with.
+// Degenerate frames and bases.
 #include <fmt/format.h>
 
 #include <array>
@@ -30,27 +30,28 @@ double largest_off(const Planes<3>& picture, float value) {
   return largest;
 }
 
-StressFinding check_black(Lab& lab) {
+StressFinding check_black(StressLog& log) {
   AnalyticOptions options{.extent = kExtent, .frames = 20};
   options.gain = [](int) { return 0.0f; };
-  StressRun run(lab, options);
-  while (run.step()) lab.note(largest_off(run.picture(), 0.0f));
-  return worst_of(lab, 0.0);
+  StressRun run(log, options);
+  while (run.step()) log.note(largest_off(run.picture(), 0.0f));
+  return worst_of(log, 0.0);
 }
 
-// Light of one value: rounding alone may move it, one ulp in each of the filter's four passes and
-// in each frame until the age limit.
-StressFinding check_constant(Lab& lab) {
+// Constant light: only rounding may change it, by one ulp in each of the filter's four passes and
+// in each frame up to the longest age.
+StressFinding check_constant(StressLog& log) {
   AnalyticOptions options{.extent = kExtent, .frames = 100};
   options.noise = options.pattern = 0.0f;
-  StressRun run(lab, options);
-  while (run.step()) lab.note(largest_off(run.picture(), 1.0f));
-  return worst_of(lab, (4 + 64) * 1.2e-7);
+  StressRun run(log, options);
+  while (run.step()) log.note(largest_off(run.picture(), 1.0f));
+  return worst_of(log, (4 + 64) * 1.2e-7);
 }
 
-// The same noisy frame for ever: a light with fine structure. Its energy stays, within three
-// deviations of the mean of its 9216 values (0.3 % each), which filters weigh in another way.
-StressFinding check_identical(Lab& lab) {
+// The same noisy frame repeated is light with fine structure. Its energy must stay within three
+// standard deviations (0.3 % each) of the mean of its 9216 values, because filters weight the
+// values differently.
+StressFinding check_identical(StressLog& log) {
   AnalyticOptions options{.extent = kExtent, .frames = 40};
   Frame first;
   options.edit = [&first](Frame& frame) {
@@ -60,7 +61,7 @@ StressFinding check_identical(Lab& lab) {
     }
     copy_planes(first.lights[0].radiance, frame.lights[0].radiance);
   };
-  StressRun run(lab, options);
+  StressRun run(log, options);
   while (run.step()) {
     double shown = 0.0, given = 0.0;
     for (std::size_t c = 0; c < 3; ++c) {
@@ -71,12 +72,12 @@ StressFinding check_identical(Lab& lab) {
         }
       }
     }
-    lab.note(std::abs(shown / given - 1.0));
+    log.note(std::abs(shown / given - 1.0));
   }
-  return worst_of(lab, 0.01);
+  return worst_of(log, 0.01);
 }
 
-// Steady light and age of a history of any number of bases, with room for three.
+// A field of three bases with the steady light and the ages of `history`.
 BasisField three_bases(const BasisField& history) {
   BasisField three(kExtent, 3);
   for (int y = 0; y < kExtent.height; ++y) {
@@ -88,7 +89,7 @@ BasisField three_bases(const BasisField& history) {
   return three;
 }
 
-// Rewrites the bases of an `eigenlight` history, which has three in use afterwards.
+// Rewrites the bases of an `eigenlight` history; afterwards three are in use.
 void edit_bases(StressRun& run, const std::function<void(BasisField&)>& edit) {
   EigenState state(kExtent, 3);
   state.take(run.denoiser());
@@ -98,7 +99,7 @@ void edit_bases(StressRun& run, const std::function<void(BasisField&)>& edit) {
   state.give(run.denoiser());
 }
 
-// V_k = a_k V_0 + b_k times a checkered V_0, which is nearly orthogonal to it.
+// V_k = a_k V_0 + b_k C, where C is V_0 with signs of a checkerboard, nearly orthogonal to V_0.
 struct Mix {
   std::string_view name;
   float a1, b1, a2, b2;
@@ -118,14 +119,14 @@ AnalyticOptions pulsing() {
   return options;
 }
 
-// Error over that of the frames' own samples.
-StressFinding check_bases(Lab& lab) {
+// Error of the output / error of the input.
+StressFinding check_bases(StressLog& log) {
   constexpr double kInput = 0.25 / 3;  // noise^2 / samples
   for (const Mix& mix : kMixes) {
-    StressRun run(lab, pulsing());
+    StressRun run(log, pulsing());
     while (run.step()) {
       const int frame = run.frame().index;
-      lab.note(relative_error(run) / kInput, mix.name);
+      log.note(relative_error(run) / kInput, mix.name);
       if (frame != 7) continue;
       edit_bases(run, [&](BasisField& field) {
         for (int y = 0; y < kExtent.height; ++y) {
@@ -141,24 +142,24 @@ StressFinding check_bases(Lab& lab) {
       });
     }
   }
-  return worst_of(lab, 1.0);
+  return worst_of(log, 1.0);
 }
 
-// More bases than the light has modes: they must not cost anything.
-StressFinding check_rank(Lab& lab) {
+// More bases than the light has modes must not increase the error.
+StressFinding check_rank(StressLog& log) {
   double with = 0.0, without = 0.0;
-  StressRun eight(lab, pulsing(), "eigenlight", 8), one(lab, pulsing(), "eigenlight", 1);
+  StressRun eight(log, pulsing(), "eigenlight", 8), one(log, pulsing(), "eigenlight", 1);
   while (one.step() && eight.step()) {
     with += relative_error(eight);
     without += relative_error(one);
   }
-  lab.note(with / without);
-  return worst_of(lab, 1.05);
+  log.note(with / without);
+  return worst_of(log, 1.05);
 }
 
-// One pixel with a surface in each coefficient tile. Bound: kChance deviations of a mean of its own
-// samples, as it has no neighbors.
-StressFinding check_lone_pixels(Lab& lab) {
+// One pixel with a surface in each coefficient tile. The pixel has no neighbors, so the bound is
+// kChance standard deviations of the mean of its own samples.
+StressFinding check_lone_pixels(StressLog& log) {
   AnalyticOptions options{.extent = kExtent, .frames = 30};
   const auto alone = [](int x, int y) { return x % 32 == 13 && y % 32 == 7; };
   options.edit = [&](Frame& frame) {
@@ -171,98 +172,104 @@ StressFinding check_lone_pixels(Lab& lab) {
       }
     }
   };
-  StressRun run(lab, options);
+  StressRun run(log, options);
   while (run.step()) {
     const double sigma = 0.5 / std::sqrt(3.0 * std::min(run.frame().index + 1, 64));
     for (int y = 7; y < kExtent.height; y += 32) {
       for (int x = 13; x < kExtent.width; x += 32) {
         for (int c = 0; c < 3; ++c) {
           const float value = run.picture()[static_cast<std::size_t>(c)](x, y);
-          lab.note(std::abs(static_cast<double>(value) / run.truth({x, y}, c) - 1.0) / sigma);
+          log.note(std::abs(static_cast<double>(value) / run.truth({x, y}, c) - 1.0) / sigma);
         }
       }
     }
   }
-  return worst_of(lab, kChance);
+  return worst_of(log, kChance);
 }
 
-// Errors long after ages have saturated over those just after: the same but for chance, some 1 % of
-// 60 frames of 3072 pixels.
-StressFinding check_saturated(Lab& lab) {
-  StressRun run(lab, {.extent = kExtent, .frames = 320});
+// Error long after ages have saturated / error just after. Chance explains 1 % over 60 frames of
+// 3072 pixels.
+StressFinding check_saturated(StressLog& log) {
+  StressRun run(log, {.extent = kExtent, .frames = 320});
   double early = 0.0, late = 0.0;
   while (run.step()) {
     const int frame = run.frame().index;
     if (frame >= 130 && frame < 190) early += relative_error(run);
     if (frame >= 260) late += relative_error(run);
   }
-  lab.note(late / early);
-  return worst_of(lab, 1.1);
+  log.note(late / early);
+  return worst_of(log, 1.1);
 }
 
-// Error four frames after a jump of the gain, over that of the mean of four frames' own samples: a
-// history that cannot follow must not be in the way.
-StressFinding after_gain(Lab& lab, float gain) {
+// Error four frames after a jump of the gain / error of the mean of four frames: a history that
+// cannot follow must not make the output worse.
+StressFinding after_gain(StressLog& log, float gain) {
   constexpr double kInput = 0.25 / (4 * 3);  // noise^2 / samples
   AnalyticOptions options{.extent = kExtent, .frames = 28};
   options.gain = [gain](int f) { return f >= 12 && f < 20 ? gain : 1.0f; };
-  StressRun run(lab, options);
+  StressRun run(log, options);
   while (run.step()) {
     const int frame = run.frame().index;
-    if (frame == 15 && gain > 0.0f) lab.note(relative_error(run) / kInput, "4 frames after");
-    if (frame == 15 && gain == 0.0f) lab.note(1e3 * largest_off(run.picture(), 0.0f), "dark");
-    if (frame == 23) lab.note(relative_error(run) / kInput, "4 frames after the light is back");
+    if (frame == 15 && gain > 0.0f) log.note(relative_error(run) / kInput, "4 frames after");
+    if (frame == 15 && gain == 0.0f) log.note(1e3 * largest_off(run.picture(), 0.0f), "dark");
+    if (frame == 23) log.note(relative_error(run) / kInput, "4 frames after the light is back");
   }
-  return worst_of(lab, 1.0);
+  return worst_of(log, 1.0);
 }
 
-StressFinding check_off_and_on(Lab& lab) { return after_gain(lab, 0.0f); }
-StressFinding check_dimmed(Lab& lab) { return after_gain(lab, 1e-6f); }
-StressFinding check_flooded(Lab& lab) { return after_gain(lab, 1e6f); }
+StressFinding check_off_and_on(StressLog& log) { return after_gain(log, 0.0f); }
+StressFinding check_dimmed(StressLog& log) { return after_gain(log, 1e-6f); }
+StressFinding check_flooded(StressLog& log) { return after_gain(log, 1e6f); }
 
-// Units of radiance do not matter.
-StressFinding check_brightness(Lab& lab) {
+// The unit of radiance must not matter.
+StressFinding check_brightness(StressLog& log) {
   AnalyticOptions options{.extent = kExtent, .frames = 16};
   options.slide = {0.4f, 0.2f};
   const auto pulse = pulsing().gain;
   for (const float scale : {1e-6f, 1e-3f, 3.0f, 1e3f, 1e6f}) {
     options.gain = pulse;
-    StressRun plain(lab, options);
+    StressRun plain(log, options);
     options.gain = [&](int f) { return scale * pulse(f); };
-    StressRun scaled(lab, options);
+    StressRun scaled(log, options);
     while (plain.step() && scaled.step()) {
       Planes<3> back = copy_of(scaled.picture());
       for (auto& plane : back) {
         for (float& value : plane.storage()) value /= scale;
       }
-      lab.note(largest_relative(back, plain.picture()), fmt::format("times {:g}", scale));
+      log.note(largest_relative(back, plain.picture()), fmt::format("times {:g}", scale));
     }
   }
-  return worst_of(lab, 1e-5);
+  return worst_of(log, 1e-5);
 }
 
 }  // namespace
 
 std::vector<StressCase> algebra_cases() {
-  return {{"algebra.black", "frames without light: largest value shown", false, check_black},
-          {"algebra.constant", "the same light everywhere: largest error, against rounding", false,
-           check_constant},
-          {"algebra.identical", "one noisy frame for ever: energy lost or gained", false,
-           check_identical},
-          {"algebra.bases", "zero, equal and nearly parallel bases: error over that of the input",
-           false, check_bases},
-          {"algebra.rank", "8 bases for light of one mode: error over that of 1 basis", false,
-           check_rank},
-          {"algebra.lone-pixels", "one pixel a tile: error in deviations of its samples' mean",
-           false, check_lone_pixels},
-          {"algebra.saturated", "error at ages long saturated over that just after", false,
-           check_saturated},
-          {"algebra.off-and-on", "light off, on: error 4 frames later over that of 4 frames' mean",
-           false, check_off_and_on},
-          {"algebra.dimmed", "light times 1e-6, and back: the same", false, check_dimmed},
-          {"algebra.flooded", "light times 1e6, and back: the same", false, check_flooded},
-          {"algebra.brightness", "all light times 1e-6 .. 1e6: relative change of the picture",
-           false, check_brightness}};
+  return {
+      {"algebra.black", "frames without light: largest output value", false, check_black},
+      {"algebra.constant", "constant light: largest error; the bound is rounding", false,
+       check_constant},
+      {"algebra.identical", "the same noisy frame repeated: share of energy lost or gained", false,
+       check_identical},
+      {"algebra.bases", "zero, equal and nearly parallel bases: error / error of the input", false,
+       check_bases},
+      {"algebra.rank", "8 bases for light of one mode: error / error with 1 basis", false,
+       check_rank},
+      {"algebra.lone-pixels",
+       "one surface pixel per tile: error / standard deviation of its samples' mean", false,
+       check_lone_pixels},
+      {"algebra.saturated", "error long after ages saturate / error just after", false,
+       check_saturated},
+      {"algebra.off-and-on", "light off, then on: error 4 frames later / error of 4 frames' mean",
+       false, check_off_and_on},
+      {"algebra.dimmed",
+       "light times 1e-6, then back: error 4 frames later / error of 4 frames' mean", false,
+       check_dimmed},
+      {"algebra.flooded",
+       "light times 1e6, then back: error 4 frames later / error of 4 frames' mean", false,
+       check_flooded},
+      {"algebra.brightness", "all light times 1e-6 .. 1e6: relative change of the output", false,
+       check_brightness}};
 }
 
 }  // namespace eigenlight

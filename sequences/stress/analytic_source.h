@@ -1,5 +1,4 @@
-// A FrameSource whose truth is known in closed form: a textured plane, seen by a camera that slides
-// along it, under light that may change.
+// A FrameSource of known truth: a textured plane, a camera that slides along it, changing light.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +14,8 @@ namespace eigenlight {
 
 /// Shape of one sample's noise, of mean 0 and variance 1.
 enum class NoiseKind {
-  kUniform,      ///< never negative light up to a noise of 1 / sqrt(3)
-  kExponential,  ///< skewed, as path-traced light is: many dark samples, few bright ones
+  kUniform,      ///< light is never negative up to a noise of 1 / sqrt(3)
+  kExponential,  ///< skewed like path-traced light: many dark samples, few bright ones
 };
 
 struct AnalyticOptions {
@@ -24,24 +23,24 @@ struct AnalyticOptions {
   int frames = 4;
   int first_frame = 0;
   int spp = 3;
-  /// Standard deviation of one sample over its mean; 0: no noise.
+  /// Standard deviation of one sample / its mean; 0: no noise.
   float noise = 0.5f;
-  glm::vec2 slide{0.0f};  ///< pixels per frame that the camera moves by; motion is its value
+  glm::vec2 slide{0.0f};  ///< pixels per frame that the camera moves; also the motion vector
   std::uint32_t seed = 0;
   /// Columns [0, sky_columns) have no surface.
   int sky_columns = 0;
-  /// Factor on all indirect light, of the frame number.
+  /// Factor on all indirect light in a frame.
   std::function<float(int)> gain = [](int) { return 1.0f; };
-  /// Called on every frame before it is handed out: for NaN, fireflies, cuts.
+  /// Called on each frame before it is handed out, to add NaN, fireflies or cuts.
   std::function<void(Frame&)> edit = [](Frame&) {};
   NoiseKind noise_kind = NoiseKind::kUniform;
   /// Amplitude [0, 1] of the pattern of the light over the plane; 0: the same light everywhere.
   float pattern = 0.8f;
-  bool is_gray = false;  ///< the pattern is the same in all channels
-  /// Factor on the light at a point of the plane (in pixels of frame 0) in a frame: light that
-  /// changes in ways that are no gain.
+  bool is_gray = false;  ///< all channels have the same pattern
+  /// Factor on the light at a point of the plane (in pixels of frame 0) in a frame, for changes
+  /// that differ between points.
   std::function<float(glm::vec2, int)> light = [](glm::vec2, int) { return 1.0f; };
-  /// Where the camera stands in a frame, in pixels along the plane; null: frame * slide.
+  /// Position of the camera in a frame, in pixels along the plane; null: frame * slide.
   std::function<glm::vec2(int)> path = nullptr;
 };
 

@@ -1,4 +1,4 @@
-// What becomes of the bases over thousands of frames: the algebra needs them apart from each other.
+// Bases over thousands of frames: they must stay linearly independent.
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
@@ -15,10 +15,10 @@
 namespace eigenlight {
 namespace {
 
-// One coefficient tile, which is its own window.
+// One coefficient tile.
 constexpr Extent kExtent{kCoefficientTile, kCoefficientTile};
 
-// Two lamps that sweep over the plane, out of step: light of rank 3 and more.
+// Two lamps sweep over the plane at different speeds: light of rank 3 or more.
 AnalyticOptions sweeping(int frames) {
   AnalyticOptions options{.extent = kExtent, .frames = frames};
   options.light = [](glm::vec2 at, int frame) {
@@ -29,7 +29,7 @@ AnalyticOptions sweeping(int frames) {
   return options;
 }
 
-// Largest |cosine| between two bases that have a length.
+// Largest |cosine| between two bases that are not 0.
 double largest_cosine(const BasisField& field) {
   const int bases = field.bases();
   SmallMatrix gram = SmallMatrix::Zero(bases, bases);
@@ -52,11 +52,11 @@ double largest_cosine(const BasisField& field) {
   return largest;
 }
 
-// The bases that each frame works with: those of the frame before, made orthogonal. The camera
-// stands still, so that no warp comes between.
-StressFinding check_orthogonality(Lab& lab) {
+// Each frame works with the orthogonalized bases of the previous frame; the camera is static, so
+// there is no warp between.
+StressFinding check_orthogonality(StressLog& log) {
   constexpr int kBases = 5;
-  StressRun run(lab, sweeping(10'000), "chen2012", kBases);
+  StressRun run(log, sweeping(10'000), "chen2012", kBases);
   ImagePca pca(kExtent, kBases);
   while (run.step()) {
     StateWriter saved;
@@ -69,13 +69,12 @@ StressFinding check_orthogonality(Lab& lab) {
     BasisHistory history(kExtent, kBases);
     history.load(in);
     pca.orthogonalize(history.bases());
-    lab.note(largest_cosine(history.bases()), fmt::format("frame {}", run.frame().index));
+    log.note(largest_cosine(history.bases()), fmt::format("frame {}", run.frame().index));
   }
-  return worst_of(lab, 1e-5);
+  return worst_of(log, 1e-5);
 }
 
-// Of the matrix that solve_coefficients solves with, its bases scaled to unit length. 0 of one
-// basis.
+// Condition of the matrix of solve_coefficients(), with bases of unit length; 0 for one basis.
 double condition(const EigenState& state, const Frame& frame) {
   TileSums sums;
   const SumInputs in{state.field, frame.lights[0].radiance, state.variance, state.memory.active()};
@@ -102,20 +101,20 @@ double condition(const EigenState& state, const Frame& frame) {
   return solver.eigenvalues()[rank - 1] / solver.eigenvalues()[0];
 }
 
-// Sums are good to 1e-7 (float along a row), so coefficients to 1e-7 times the condition: at 1e4
+// Sums are exact to 1e-7 (float along a row), so coefficients to 1e-7 times the condition: at 1e4
 // to a tenth of a percent.
-StressFinding check_condition(Lab& lab) {
+StressFinding check_condition(StressLog& log) {
   constexpr int kBases = 5;
-  StressRun run(lab, sweeping(10'000), "eigenlight", kBases);
+  StressRun run(log, sweeping(10'000), "eigenlight", kBases);
   EigenState state(kExtent, kBases);
   double cosine = 0.0, rank = 0.0;
   while (run.step()) {
     state.take(run.denoiser());
-    lab.note(condition(state, run.frame()), fmt::format("frame {}", run.frame().index));
+    log.note(condition(state, run.frame()), fmt::format("frame {}", run.frame().index));
     cosine = std::max(cosine, largest_cosine(state.field));
     rank += run.report().mean_rank / 10'000;
   }
-  StressFinding finding = worst_of(lab, 1e4);
+  StressFinding finding = worst_of(log, 1e4);
   finding.note = fmt::format("largest cosine {:.3f}, mean rank {:.2f}", cosine, rank);
   return finding;
 }
@@ -125,7 +124,7 @@ StressFinding check_condition(Lab& lab) {
 std::vector<StressCase> basis_cases() {
   return {
       {"bases.orthogonality",
-       "chen2012, 10,000 frames of moving light: largest |<b_i, b_j>| of unit bases", true,
+       "chen2012, 10,000 frames of moving light: largest |cosine| of two bases", true,
        check_orthogonality},
       {"bases.condition", "eigenlight, 10,000 frames of moving light: condition of the Gram matrix",
        true, check_condition}};

@@ -1,4 +1,4 @@
-// The same bits, however the work is done.
+// Equal bits for any threads, order, process and instruction set.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -11,7 +11,7 @@
 namespace eigenlight {
 namespace {
 
-// Moving camera, changing light, a few bad samples: every stage has work.
+// A moving camera, changing light and a bad sample give work to every stage.
 AnalyticOptions busy(Extent extent = {191, 107}) {
   AnalyticOptions options{.extent = extent, .frames = 8};
   options.slide = {0.7f, 0.3f};
@@ -23,7 +23,7 @@ AnalyticOptions busy(Extent extent = {191, 107}) {
   return options;
 }
 
-// Threads and order of the loops, as they were.
+// Restores the number of threads and the order of loops.
 struct RestoreLoops {
   ~RestoreLoops() {
     set_thread_count(threads);
@@ -32,74 +32,79 @@ struct RestoreLoops {
   int threads = thread_count();
 };
 
-Planes<3> last_picture(Lab& lab, const AnalyticOptions& options = busy()) {
-  StressRun run(lab, options);
+Planes<3> last_picture(StressLog& log, const AnalyticOptions& options = busy()) {
+  StressRun run(log, options);
   return copy_of(run.finish());
 }
 
-// A wide picture is walked in strips of other widths by more threads.
-StressFinding check_threads(Lab& lab) {
+// More threads process a wide picture in strips of other widths.
+StressFinding check_threads(StressLog& log) {
   const RestoreLoops restore;
   for (const Extent extent : {Extent{191, 107}, Extent{1400, 70}}) {
     set_thread_count(1);
-    const Planes<3> wanted = last_picture(lab, busy(extent));
+    const Planes<3> wanted = last_picture(log, busy(extent));
     for (const int threads : {2, 3, 8}) {
       set_thread_count(threads);
-      lab.note(different_pixels(last_picture(lab, busy(extent)), wanted),
+      log.note(different_pixels(last_picture(log, busy(extent)), wanted),
                fmt::format("{} threads, {} pixels wide", threads, extent.width));
     }
   }
-  return worst_of(lab, 0.0);
+  return worst_of(log, 0.0);
 }
 
-StressFinding check_order(Lab& lab) {
+StressFinding check_order(StressLog& log) {
   const RestoreLoops restore;
-  const Planes<3> wanted = last_picture(lab);
+  const Planes<3> wanted = last_picture(log);
   for (const std::uint32_t order : {1u, 2u, 3u}) {
     set_loop_order(order);
-    lab.note(different_pixels(last_picture(lab), wanted), fmt::format("order {}", order));
+    log.note(different_pixels(last_picture(log), wanted), fmt::format("order {}", order));
   }
-  return worst_of(lab, 0.0);
+  return worst_of(log, 0.0);
 }
 
-StressFinding check_twice(Lab& lab) {
-  const Planes<3> wanted = last_picture(lab);
-  lab.note(different_pixels(last_picture(lab), wanted));
-  return worst_of(lab, 0.0);
+StressFinding check_twice(StressLog& log) {
+  const Planes<3> wanted = last_picture(log);
+  log.note(different_pixels(last_picture(log), wanted));
+  return worst_of(log, 0.0);
 }
 
-StressFinding check_resume(Lab& lab) {
-  const Planes<3> wanted = last_picture(lab);
-  StressRun first(lab, busy());
+StressFinding check_resume(StressLog& log) {
+  const Planes<3> wanted = last_picture(log);
+  StressRun first(log, busy());
   for (int i = 0; i < 4; ++i) (void)first.step();
   StateWriter state;
   first.denoiser().save(state);
   AnalyticOptions rest = busy();
   rest.first_frame = 4;
   rest.frames -= 4;
-  StressRun second(lab, rest);
+  StressRun second(log, rest);
   StateReader in({state.bytes().data(), state.bytes().size()});
   second.denoiser().load(in);
-  lab.note(different_pixels(second.finish(), wanted));
-  return worst_of(lab, 0.0);
+  log.note(different_pixels(second.finish(), wanted));
+  return worst_of(log, 0.0);
 }
 
-StressFinding check_targets(Lab& lab) {
-  const Planes<3> wanted = last_picture(lab);
+StressFinding check_targets(StressLog& log) {
+  const Planes<3> wanted = last_picture(log);
   for_each_instruction_set(
-      [&](std::string_view name) { lab.note(largest_relative(last_picture(lab), wanted), name); });
-  return worst_of(lab, 1e-5);
+      [&](std::string_view name) { log.note(largest_relative(last_picture(log), wanted), name); });
+  return worst_of(log, 1e-5);
 }
 
 }  // namespace
 
 std::vector<StressCase> determinism_cases() {
   return {
-      {"determinism.threads", "1, 2, 3, 8 threads: values that differ", false, check_threads},
-      {"determinism.order", "tiles in other orders: values that differ", false, check_order},
-      {"determinism.twice", "twice in one process: values that differ", false, check_twice},
-      {"determinism.resume", "checkpoint and resume: values that differ", false, check_resume},
-      {"determinism.targets", "every instruction set: relative difference", false, check_targets}};
+      {"determinism.threads", "1, 2, 3, 8 threads: number of different values", false,
+       check_threads},
+      {"determinism.order", "tiles in other orders: number of different values", false,
+       check_order},
+      {"determinism.twice", "two runs in one process: number of different values", false,
+       check_twice},
+      {"determinism.resume", "resumed run: number of values that differ from an uninterrupted run",
+       false, check_resume},
+      {"determinism.targets", "each instruction set: relative difference from the default", false,
+       check_targets}};
 }
 
 }  // namespace eigenlight

@@ -1,4 +1,4 @@
-// What a checkpoint of `eigenlight` holds, taken apart.
+// The parts of a checkpoint of `eigenlight`.
 #pragma once
 
 #include "reproject/basis_field.h"

@@ -1,4 +1,4 @@
-// Samples that are far too bright: no energy lost or invented beyond a bias, no trail, no block.
+// Fireflies: they must leave no trail and no block, and keep the energy of the light.
 #include <fmt/format.h>
 
 #include <array>
@@ -23,8 +23,8 @@ struct Fireflies {
   [[nodiscard]] std::string text() const { return fmt::format("{:g} at {:g}", size, rate); }
 };
 
-// Each pixel of the frames in question holds one with the chance that one of its samples has; one
-// pixel has it for certain.
+// In each frame from `first` to `last` a pixel holds a firefly with probability rate * samples; in
+// frame `first` pixel (21, 19) always does.
 AnalyticOptions with_fireflies(const Fireflies& flies, AnalyticOptions options) {
   options.edit = [flies](Frame& frame) {
     if (frame.index < flies.first || frame.index > flies.last) return;
@@ -43,7 +43,7 @@ AnalyticOptions with_fireflies(const Fireflies& flies, AnalyticOptions options) 
   return options;
 }
 
-// Standard deviation of the mean of a pixel's own samples: what it may show without its neighbors.
+// Standard deviation of the mean of a pixel's own samples.
 Planes<3> own_noise(const StressRun& run) {
   Planes<3> noise = make_planes<3>(kExtent);
   const float share = 0.5f / std::sqrt(3.0f * static_cast<float>(run.frame().index + 1));
@@ -57,24 +57,24 @@ Planes<3> own_noise(const StressRun& run) {
   return noise;
 }
 
-// A burst of four frames, and four good frames. Each hit moves the mean of a pixel by one of its
-// own deviations at most: a pixel hit in all four by 4, and chance adds 2.
-StressFinding check_trail(Lab& lab) {
+// Four frames with fireflies, then four without. Each firefly changes the mean of a pixel by one
+// standard deviation at most: four of them by 4, and chance adds 2.
+StressFinding check_trail(StressLog& log) {
   constexpr int kFirst = 12, kLast = 15, kTrail = 4, kFrames = kLast + kTrail + 3;
   const AnalyticOptions options{.extent = kExtent, .frames = kFrames};
   for (const float size : kSizes) {
     for (const double rate : kRates) {
       const Fireflies flies{size, rate, kFirst, kLast};
-      StressRun clean(lab, options), hit(lab, with_fireflies(flies, options));
+      StressRun clean(log, options), hit(log, with_fireflies(flies, options));
       while (clean.step() && hit.step()) {
         if (hit.frame().index < kLast + kTrail) continue;
-        lab.note(largest_deviation(hit.picture(), clean.picture(), own_noise(hit),
+        log.note(largest_deviation(hit.picture(), clean.picture(), own_noise(hit),
                                    [](int, int) { return true; }),
                  flies.text());
       }
     }
   }
-  return worst_of(lab, 6.0);
+  return worst_of(log, 6.0);
 }
 
 double mean_of(const Planes<3>& planes, const Rect& tile) {
@@ -87,42 +87,42 @@ double mean_of(const Planes<3>& planes, const Rect& tile) {
   return sum / (3.0 * tile.pixels());
 }
 
-// Fireflies for ever: what is shown lies between the light without them and the light with them.
-StressFinding check_energy(Lab& lab) {
+// Fireflies in all frames: the output lies between the light without them and the light with them.
+StressFinding check_energy(StressLog& log) {
   const AnalyticOptions options{.extent = kExtent, .frames = 24};
   const Rect all{0, 0, kExtent.width, kExtent.height};
   for (const float size : kSizes) {
     for (const double rate : kRates) {
       const Fireflies flies{size, rate, 0, options.frames};
-      StressRun clean(lab, options), hit(lab, with_fireflies(flies, options));
+      StressRun clean(log, options), hit(log, with_fireflies(flies, options));
       while (clean.step() && hit.step()) {
         if (hit.frame().index < 4) continue;
         const double without = mean_of(clean.picture(), all), found = mean_of(hit.picture(), all);
         const double with = without + rate * static_cast<double>(size);
-        lab.note(std::max(without - found, found - with) / without, flies.text());
+        log.note(std::max(without - found, found - with) / without, flies.text());
       }
     }
   }
-  return worst_of(lab, 0.02);
+  return worst_of(log, 0.02);
 }
 
-// No coefficient tile stands out of the picture while fireflies fall and after.
-StressFinding check_blocks(Lab& lab) {
+// No coefficient tile may become visible during or after the fireflies.
+StressFinding check_blocks(StressLog& log) {
   constexpr int kFirst = 12, kLast = 15;
   const AnalyticOptions options{.extent = {96, 96}, .frames = 20};
   const TileGrid grid(options.extent, 32, 32);
   for (const float size : kSizes) {
     const Fireflies flies{size, 1e-5, kFirst, kLast};
-    StressRun clean(lab, options), hit(lab, with_fireflies(flies, options));
+    StressRun clean(log, options), hit(log, with_fireflies(flies, options));
     while (clean.step() && hit.step()) {
       for (int i = 0; i < grid.count(); ++i) {
         const double ratio =
             mean_of(hit.picture(), grid.tile(i)) / mean_of(clean.picture(), grid.tile(i));
-        lab.note(std::abs(ratio - 1.0), flies.text());
+        log.note(std::abs(ratio - 1.0), flies.text());
       }
     }
   }
-  return worst_of(lab, 0.02);
+  return worst_of(log, 0.02);
 }
 
 }  // namespace
@@ -130,12 +130,11 @@ StressFinding check_blocks(Lab& lab) {
 std::vector<StressCase> firefly_cases() {
   return {
       {"fireflies.trail",
-       "4 frames after the last: deviation from the clean run, in noise of the pixel's own mean",
+       "4 frames after the last: difference from a clean run / noise of the pixel's own mean",
        false, check_trail},
-      {"fireflies.energy",
-       "share of the mean light lost, or shown beyond what fireflies carry; stated: 2 %", false,
-       check_energy},
-      {"fireflies.blocks", "change of the mean of any 32 x 32 tile; below sight at 2 %", false,
+      {"fireflies.energy", "share of the mean light lost, or gained beyond the fireflies' energy",
+       false, check_energy},
+      {"fireflies.blocks", "largest change of the mean of a 32 x 32 tile; invisible at 2 %", false,
        check_blocks}};
 }
 

@@ -59,12 +59,12 @@ Planes<3> copy_of(const Planes<3>& planes) {
   return {planes[0].clone(), planes[1].clone(), planes[2].clone()};
 }
 
-NoiseMaps noise_maps(Lab& lab, const AnalyticOptions& options) {
+NoiseMaps noise_maps(StressLog& log, const AnalyticOptions& options) {
   std::vector<std::vector<Planes<3>>> runs(kRuns);
   for (std::uint32_t r = 0; r < kRuns; ++r) {
     AnalyticOptions other = options;
     other.seed = hash_key(options.seed, 0x6e6f6973u, r);
-    StressRun run(lab, other);
+    StressRun run(log, other);
     while (const Planes<3>* picture = run.step()) runs[r].push_back(copy_of(*picture));
   }
   NoiseMaps maps;

@@ -4,6 +4,6 @@
 namespace eigenlight {
 
 [[nodiscard]] double resident_bytes();  ///< now
-[[nodiscard]] double peak_bytes();      ///< the most so far
+[[nodiscard]] double peak_bytes();      ///< the largest so far
 
 }  // namespace eigenlight

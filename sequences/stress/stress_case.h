@@ -1,4 +1,4 @@
-// The cases of `eigenlight stress`: what each checks, and the bound that it must stay within.
+// The cases of `eigenlight stress`, each with a figure and its bound.
 #pragma once
 
 #include <cmath>
@@ -6,28 +6,28 @@
 #include <string_view>
 #include <vector>
 
-#include "sequences/stress/lab.h"
+#include "sequences/stress/stress_run.h"
 
 namespace eigenlight {
 
-/// What a case found.
+/// The result of a case.
 struct StressFinding {
   double figure = 0.0;
   double bound = 0.0;
-  std::string where;  ///< what the worst figure belongs to; may be empty
-  std::string note;   ///< for people, beside the figure; may be empty
+  std::string where;  ///< what the worst figure belongs to, or empty
+  std::string note;   ///< a remark for people, or empty
 
   [[nodiscard]] bool pass() const { return std::islessequal(figure, bound); }  // NaN fails
 };
 
 struct StressCase {
   std::string_view name;  ///< theme.case
-  std::string_view what;  ///< what the figure is, and where its bound is from
-  bool is_long = false;   ///< takes more than seconds: with --long only
-  StressFinding (*run)(Lab&);
+  std::string_view what;  ///< what the figure is
+  bool is_long = false;   ///< takes minutes: only runs with --long
+  StressFinding (*run)(StressLog&);
 };
 
-/// All cases, in the order they are run.
+/// All cases, in the order in which they run.
 [[nodiscard]] std::vector<StressCase> stress_cases();
 
 /// The cases of each theme.
@@ -41,9 +41,9 @@ struct StressCase {
 [[nodiscard]] std::vector<StressCase> determinism_cases();
 [[nodiscard]] std::vector<StressCase> basis_cases();
 
-/// The worst figure that was noted in `lab`, against `bound`.
-[[nodiscard]] inline StressFinding worst_of(const Lab& lab, double bound) {
-  return {lab.worst(), bound, lab.worst_what(), {}};
+/// The worst figure in `log`, with its bound.
+[[nodiscard]] inline StressFinding worst_of(const StressLog& log, double bound) {
+  return {log.worst(), bound, log.worst_what(), {}};
 }
 
 }  // namespace eigenlight

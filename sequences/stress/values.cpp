@@ -1,4 +1,4 @@
-// Bad values in every field of a frame: they must stay alone, be counted, and be forgotten.
+// Bad values in each field of a frame: they must be counted, not spread, and be forgotten.
 #include <fmt/format.h>
 
 #include <array>
@@ -17,7 +17,7 @@ constexpr int kFrames = 12, kFault = 6, kRecovery = 4;
 struct BadValue {
   std::string_view name;
   float value;
-  bool counted;  // as indirect light: excluded, because it is not finite or cannot be squared
+  bool counted;  // in the light: excluded because it is not finite or its square overflows
 };
 constexpr std::array<BadValue, 8> kValues{{{"NaN", std::numeric_limits<float>::quiet_NaN(), true},
                                            {"+Inf", std::numeric_limits<float>::infinity(), true},
@@ -68,11 +68,12 @@ struct Fault {
 
   [[nodiscard]] bool in(int frame) const { return frame == kFault || (for_ever && frame > kFault); }
   [[nodiscard]] std::string text() const {
-    return fmt::format("{} at {}, {}", bad.name, shape.name, for_ever ? "for ever" : "once");
+    return fmt::format("{} at {}, {}", bad.name, shape.name,
+                       for_ever ? "in all later frames" : "once");
   }
 };
 
-// The camera stands, but the denoiser is not told so and reprojects.
+// The camera is static, but the denoiser is not told, so that it warps.
 AnalyticOptions clean_options() {
   AnalyticOptions options{.extent = kExtent, .frames = kFrames};
   options.edit = [](Frame& frame) { frame.is_static = false; };
@@ -97,11 +98,11 @@ struct Clean {
   NoiseMaps noise;
 };
 
-Clean run_clean(Lab& lab) {
+Clean run_clean(StressLog& log) {
   Clean clean;
-  StressRun run(lab, clean_options());
+  StressRun run(log, clean_options());
   while (const Planes<3>* picture = run.step()) clean.pictures.push_back(copy_of(*picture));
-  clean.noise = noise_maps(lab, clean_options());
+  clean.noise = noise_maps(log, clean_options());
   return clean;
 }
 
@@ -118,9 +119,9 @@ Planes<3> true_light(const StressRun& run, float factor) {
   return light;
 }
 
-// What the bad pixels themselves may be off by. A history of four frames has the noise that the
-// fourth frame of a clean run has; light that cannot be used leaves history as it was; surfaces
-// that cannot be followed leave the frame's own samples.
+// Deviation of the bad pixels themselves. After four frames of recovery they have the noise of the
+// fourth frame of a clean run. Unusable light leaves the history unchanged; a surface that cannot
+// be tracked leaves the frame's own samples.
 double deviation_of_bad(const Fault& fault, const StressRun& run, const Clean& clean) {
   const auto bad = [&](int x, int y) { return fault.shape.has(x, y); };
   const Planes<3>& wanted = clean.pictures[static_cast<std::size_t>(run.frame().index)];
@@ -135,7 +136,7 @@ double deviation_of_bad(const Fault& fault, const StressRun& run, const Clean& c
       }
       return 0.0;
     }
-    // Of a frame's own three samples.
+    // The noise of a frame's own three samples.
     const Planes<3> noise = true_light(run, 0.5f / std::sqrt(3.0f));
     return largest_deviation(run.picture(), wanted, noise, bad);
   }
@@ -144,53 +145,57 @@ double deviation_of_bad(const Fault& fault, const StressRun& run, const Clean& c
                    : 0.0;
 }
 
-void check_fault(Lab& lab, const Fault& fault, const Clean& clean) {
-  StressRun run(lab, with_fault(fault));
+void check_fault(StressLog& log, const Fault& fault, const Clean& clean) {
+  StressRun run(log, with_fault(fault));
   while (run.step()) {
     const auto frame = static_cast<std::size_t>(run.frame().index);
     const bool bad_light = fault.field == Field::kSignal && fault.bad.counted;
     const std::int64_t wanted = bad_light && fault.in(run.frame().index) ? fault.shape.pixels() : 0;
     if (run.report().non_finite_pixels != wanted) {
-      lab.note(std::numeric_limits<double>::infinity(), "count of " + fault.text());
+      log.note(std::numeric_limits<double>::infinity(), "count of " + fault.text());
     }
-    // Beside surfaces that cannot be followed a pixel has its own samples left, and no neighbors.
+    // Beside surfaces that cannot be tracked a pixel has only its own samples, no neighbors.
     const bool alone = fault.field == Field::kNormal || fault.field == Field::kDepth;
     const Planes<3> own = true_light(run, 0.5f / std::sqrt(3.0f * static_cast<float>(frame + 1)));
-    lab.note(
+    log.note(
         largest_deviation(run.picture(), clean.pictures[frame], alone ? own : clean.noise[frame],
                           [&](int x, int y) { return !fault.shape.has(x, y); }),
         "the others, " + fault.text());
-    lab.note(deviation_of_bad(fault, run, clean), "itself, " + fault.text());
+    log.note(deviation_of_bad(fault, run, clean), "itself, " + fault.text());
   }
 }
 
 template <Field kField>
-StressFinding check_field(Lab& lab) {
-  const Clean clean = run_clean(lab);
+StressFinding check_field(StressLog& log) {
+  const Clean clean = run_clean(log);
   for (const BadValue& bad : kValues) {
-    // Motion of five pixels is nothing bad, only another motion.
+    // A motion of five pixels is valid.
     if (kField == Field::kMotion && bad.value == -5.0f) continue;
     for (const Shape& shape : kShapes) {
       for (const bool for_ever : {false, true}) {
-        // What float can square and many pixels share, or one keeps, is light and no fault.
+        // Values with a finite square that many pixels share, or that stay, are light, not a fault.
         const bool is_light = kField == Field::kSignal && !bad.counted && shape.pixels() > 64;
         if (is_light || (bad.value == 9e17f && for_ever)) continue;
-        check_fault(lab, {kField, bad, shape, for_ever}, clean);
+        check_fault(log, {kField, bad, shape, for_ever}, clean);
       }
     }
   }
-  return worst_of(lab, kChance);
+  return worst_of(log, kChance);
 }
 
 }  // namespace
 
 std::vector<StressCase> value_cases() {
-  return {{"values.signal", "bad light: deviation from the clean run, in its noise", false,
+  return {{"values.signal", "bad light: difference from a clean run / its noise", false,
            check_field<Field::kSignal>},
-          {"values.albedo", "bad albedo: the same", false, check_field<Field::kAlbedo>},
-          {"values.normal", "bad normals: the same", false, check_field<Field::kNormal>},
-          {"values.depth", "bad depths: the same", false, check_field<Field::kDepth>},
-          {"values.motion", "bad motion: the same", false, check_field<Field::kMotion>}};
+          {"values.albedo", "bad albedo: difference from a clean run / its noise", false,
+           check_field<Field::kAlbedo>},
+          {"values.normal", "bad normals: difference from a clean run / its noise", false,
+           check_field<Field::kNormal>},
+          {"values.depth", "bad depths: difference from a clean run / its noise", false,
+           check_field<Field::kDepth>},
+          {"values.motion", "bad motion: difference from a clean run / its noise", false,
+           check_field<Field::kMotion>}};
 }
 
 }  // namespace eigenlight

@@ -6,10 +6,10 @@
 
 namespace eigenlight {
 
-BlendedHistory::BlendedHistory(Extent extent, Form form)
-    : form_(std::move(form)),
+BlendedHistory::BlendedHistory(Extent extent, HistorySetup setup)
+    : setup_(std::move(setup)),
       tiles_(stage_tiles(extent)),
-      history_(extent, form_.bases, form_.history),
+      history_(extent, setup_.bases, setup_.history),
       age_(extent),
       counts_(static_cast<std::size_t>(tiles_.count())) {}
 
@@ -36,12 +36,12 @@ const Planes<3>* BlendedHistory::step(FrameSource& source) {
 }
 
 void BlendedHistory::save(StateWriter& out) const {
-  out.value(form_.name, form_.version);
+  out.value(setup_.name, setup_.version);
   history_.save(out);
 }
 
 void BlendedHistory::load(StateReader& in) {
-  in.version(form_.name, form_.version);
+  in.version(setup_.name, setup_.version);
   history_.load(in);
 }
 

@@ -26,14 +26,14 @@ class BlendedHistory : public Denoiser {
   void load(StateReader& in) final;
 
  protected:
-  struct Form {
-    std::string name;      ///< of the method, which its states bear
-    std::int32_t version;  ///< of its states
-    int bases;             ///< of its history
+  struct HistorySetup {
+    std::string name;      ///< of the method, written into its states
+    std::int32_t version;  ///< of the format of its states
+    int bases;             ///< number of bases in its history
     HistoryOptions history = {};
   };
 
-  BlendedHistory(Extent extent, Form form);
+  BlendedHistory(Extent extent, HistorySetup setup);
 
   /// Blends this frame into the history of a tile, by for_each_sample().
   virtual void blend_tile(const Tile& tile) = 0;
@@ -49,7 +49,7 @@ class BlendedHistory : public Denoiser {
   [[nodiscard]] BasisField& bases() { return history_.bases(); }
 
  private:
-  Form form_;
+  HistorySetup setup_;
   TileGrid tiles_;
   Frame frame_;
   FrameReport report_;

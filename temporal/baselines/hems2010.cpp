@@ -26,13 +26,26 @@ float difference(const glm::vec3& a, const glm::vec3& b) {
   return size > 0.0f ? glm::dot(apart, apart) / size : 0.0f;
 }
 
+// Saves or loads a past frame.
+template <typename PastFrame, typename State>
+void archive(PastFrame& past, State& state) {
+  state.value("index", past.index);
+  state.value("camera", past.camera);
+  state.plane("depth", past.surface.depth);
+  state.planes("normal", past.surface.normal);
+  state.plane("id", past.surface.id);
+  state.planes("motion", past.motion);
+  state.plane("previous depth", past.previous_depth);
+  state.planes("light", past.light);
+  state.plane("known", past.known);
+}
+
 }  // namespace
 
 void HemsOptions::validate() const {
   EL_CHECK(frames >= 0 && frames <= 16, "frames {}: expected 0 to 16", frames);
   EL_CHECK(radius >= 0 && radius <= 16, "radius {}: expected 0 to 16 pixels", radius);
   EL_CHECK(color > 0.0f && color <= 100.0f, "color {}: expected (0, 100]", color);
-  EL_CHECK(decay > 0.0f && decay <= 1.0f, "decay {}: expected (0, 1]", decay);
   taps.validate();
 }
 
@@ -126,7 +139,7 @@ bool Hems2010::gather_pixel(glm::ivec2 p) {
   const glm::vec3 own = at(smooth_, p);
   const bool known = known_(p.x, p.y) > 0.0f;
   glm::vec3 sum = own;
-  float weights = known ? 1.0f : 0.0f, squares = weights, decay = 1.0f;
+  float weights = known ? 1.0f : 0.0f, squares = weights;
   SoughtPoint point{
       frame_.surface.id(p.x, p.y), at(frame_.surface.normal, p),
       glm::vec2(p) + glm::vec2(frame_.motion[0](p.x, p.y), frame_.motion[1](p.x, p.y)),
@@ -136,7 +149,6 @@ bool Hems2010::gather_pixel(glm::ivec2 p) {
     const PointTaps taps = point_taps({past.camera, past.surface}, options_.taps, point);
     if (!taps.found()) break;
     seen = true;
-    decay *= options_.decay;
     glm::vec3 light(0.0f);
     glm::vec2 motion(0.0f);
     float share = 0.0f, strongest = 0.0f;
@@ -157,7 +169,7 @@ bool Hems2010::gather_pixel(glm::ivec2 p) {
     if (!(share > 0.0f)) continue;
     light /= share;
     const float apart = known ? difference(light, own) : 0.0f;
-    const float weight = decay * std::exp(-apart / (2.0f * options_.color * options_.color));
+    const float weight = std::exp(-apart / (2.0f * options_.color * options_.color));
     sum += weight * light;
     weights += weight;
     squares += weight * weight;
@@ -196,17 +208,7 @@ void Hems2010::keep() {
 void Hems2010::save(StateWriter& out) const {
   out.value("hems2010", kStateVersion);
   out.value("frames", past_.size());
-  for (const PastFrame& past : past_) {
-    out.value("index", past.index);
-    out.value("camera", past.camera);
-    out.plane("depth", past.surface.depth);
-    out.planes("normal", past.surface.normal);
-    out.plane("id", past.surface.id);
-    out.planes("motion", past.motion);
-    out.plane("previous depth", past.previous_depth);
-    out.planes("light", past.light);
-    out.plane("known", past.known);
-  }
+  for (const PastFrame& past : past_) archive(past, out);
 }
 
 void Hems2010::load(StateReader& in) {
@@ -219,15 +221,7 @@ void Hems2010::load(StateReader& in) {
   }
   past_ = std::vector<PastFrame>(frames);
   for (PastFrame& past : past_) {
-    in.value("index", past.index);
-    in.value("camera", past.camera);
-    in.plane("depth", past.surface.depth);
-    in.planes("normal", past.surface.normal);
-    in.plane("id", past.surface.id);
-    in.planes("motion", past.motion);
-    in.plane("previous depth", past.previous_depth);
-    in.planes("light", past.light);
-    in.plane("known", past.known);
+    archive(past, in);
     const Extent wanted = tiles_.extent();
     const Extent found = past.known.extent();
     if (found != wanted) {

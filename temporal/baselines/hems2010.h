@@ -13,7 +13,6 @@ struct HemsOptions {
   int frames = 16;     ///< [0, 16] past frames
   int radius = 8;      ///< [0, 16] pixels, of the window in space: 17 x 17; 0: none
   float color = 0.3f;  ///< (0, 100] difference of color, over color, at which the weight is e^-1/2
-  float decay = 1.0f;  ///< (0, 1] factor on the weight for each frame of age
   TapOptions taps = {};
 
   void validate() const;  ///< throws std::invalid_argument naming the field
@@ -24,7 +23,7 @@ struct HemsOptions {
 /// geometry-aware window makes of each frame:
 ///   s = the cross bilateral filter of u (spatial/rivals/cross_bilateral.h), by normals and depth
 ///   alone, out(p) = sum_k w_k s_k / sum_k w_k,  k = 0 .. 16 frames ago, w_0 = 1,
-///     w_k = decay^k exp(-|s_k - s_0|^2 / (2 color^2 (|s_k|^2 + |s_0|^2) / 2)).
+///     w_k = exp(-|s_k - s_0|^2 / (2 color^2 (|s_k|^2 + |s_0|^2) / 2)).
 /// s_k is read at the point's own place k frames ago: its motion is followed from frame to frame,
 /// and each step has to find the surface by the rule of reproject/taps.h. Every frame is shaded in
 /// full here, as in Chen's comparison; Herzog's frames are sparse, and the window is what fills

@@ -19,6 +19,16 @@ StageTime operator/(StageTime time, double parts) {
   return {time.wall_ms / parts, time.cpu_ms / parts};
 }
 
+// Saves or loads a picture.
+template <typename Picture, typename State>
+void archive(Picture& stored, State& state) {
+  state.value("index", stored.index);
+  state.value("cut", stored.cut);
+  state.value("fresh", stored.fresh);
+  state.planes("light", stored.light);
+  state.plane("age", stored.age);
+}
+
 }  // namespace
 
 Meyer2006::Meyer2006(const DenoiserOptions& options, const MeyerOptions& parts)
@@ -160,17 +170,12 @@ void Meyer2006::save(StateWriter& out) const {
   out.value("meyer2006", kStateVersion);
   out.value("bases", options_.pca.bases);
   out.value("size", extent_);
-  const auto write = [&](const Picture& made) {
-    out.value("index", made.index);
-    out.value("cut", made.cut);
-    out.value("fresh", made.fresh);
-    out.planes("light", made.light);
-    out.plane("age", made.age);
-  };
   out.value("pictures", pictures_.size() + frames_.size());
-  for (const Picture& stored : pictures_) write(stored);
-  for (std::size_t i = 0; i < frames_.size(); ++i)
-    write(picture(done_ + static_cast<int>(i), frames_[i].index));
+  for (const Picture& stored : pictures_) archive(stored, out);
+  for (std::size_t i = 0; i < frames_.size(); ++i) {
+    const Picture made = picture(done_ + static_cast<int>(i), frames_[i].index);
+    archive(made, out);
+  }
 }
 
 void Meyer2006::load(StateReader& in) {
@@ -191,11 +196,7 @@ void Meyer2006::load(StateReader& in) {
   next_.reset();
   for (std::size_t i = 0; i < count; ++i) {
     Picture& stored = pictures_.emplace_back();
-    in.value("index", stored.index);
-    in.value("cut", stored.cut);
-    in.value("fresh", stored.fresh);
-    in.planes("light", stored.light);
-    in.plane("age", stored.age);
+    archive(stored, in);
     if (stored.age.extent() != extent_ || stored.light[0].extent() != extent_) {
       throw std::runtime_error("state of 'meyer2006': a picture of another size");
     }

@@ -43,16 +43,6 @@ Series load(const PointTracks& tracks, std::uint32_t first) {
   return series;
 }
 
-// Divides the light of each track by its root mean square.
-void equalize(Series& series) {
-  for (Index track = 0; track < series.count; ++track) {
-    auto light = series.light.middleCols<3>(3 * track);
-    const double energy = light.squaredNorm();
-    const double values = 3.0 * series.seen.col(track).sum();
-    if (energy > 0.0) light *= std::sqrt(values / energy);
-  }
-}
-
 void for_each_chunk(const PointTracks& tracks,
                     const std::function<void(std::size_t, Series&)>& body) {
   const int chunks = static_cast<int>((tracks.count() + kChunk - 1) / kChunk);
@@ -173,7 +163,6 @@ void TrackPca::find_weights(const PointTracks& tracks) {
   };
   std::vector<Pairs> parts(chunk_count(tracks));
   for_each_chunk(tracks, [&](std::size_t chunk, Series& series) {
-    if (options_.equal_points) equalize(series);
     parts[chunk] = {series.light * series.light.transpose(), series.seen * series.seen.transpose()};
   });
   const Index frames = tracks.frames();
@@ -190,7 +179,6 @@ void TrackPca::find_weights(const PointTracks& tracks) {
 void TrackPca::sweep(const PointTracks& tracks) {
   std::vector<FrameEquations> parts(chunk_count(tracks), {weights_.rows(), weights_.cols()});
   for_each_chunk(tracks, [&](std::size_t chunk, Series& series) {
-    if (options_.equal_points) equalize(series);
     for (Index track = 0; track < series.count; ++track) {
       const int used = bases_of(series.first + static_cast<std::uint32_t>(track));
       if (used == 0) continue;

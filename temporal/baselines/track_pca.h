@@ -12,9 +12,6 @@ struct TrackPcaOptions {
   int bases = 8;             ///< [1, 8] N
   int frames_per_basis = 4;  ///< [1, 64] a point seen in n frames takes at most n / this bases
   int sweeps = 4;            ///< [0, 100] of least squares, where points are missing in frames
-  /// All points weigh the same: weights are those of light over its root mean square at the point,
-  /// which outliers cannot lead. Meyer has no such step, and it did not pay (docs/experiments).
-  bool equal_points = false;
 
   void validate() const;  ///< throws std::invalid_argument naming the field
 };

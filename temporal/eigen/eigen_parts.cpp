@@ -35,18 +35,6 @@ constexpr std::array kSwitches{
              options.look_back = false;
              options.atrous.luminance_sigmas = 5.0f;
            }},
-    Switch{{"skip-still", "taps and warp also where nothing moves"},
-           [](EigenOptions& options, int&) { options.skip_still = false; }},
-    Switch{{"skip-empty", "all work also in tiles without surface"},
-           [](EigenOptions& options, int&) { options.skip_empty = false; }},
-    Switch{{"skip-quiet", "a-trous passes also where there is little left to filter"},
-           [](EigenOptions& options, int&) { options.quiet_variance = 0.0f; }},
-    Switch{{"skip-planar", "a-trous passes weigh geometry also where all taps lie in one plane"},
-           [](EigenOptions& options, int&) {
-             options.atrous.skip_planar = options.correction.skip_planar = false;
-           }},
-    Switch{{"skip-steady", "the correction filters also where no light changes"},
-           [](EigenOptions& options, int&) { options.correction.gated = false; }},
 };
 
 }  // namespace

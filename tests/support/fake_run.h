@@ -9,7 +9,8 @@
 #include <vector>
 
 #include "frame/random.h"
-#include "sequences/runs/output.h"
+#include "sequences/runs/frame_writer.h"
+#include "sequences/runs/run_description.h"
 #include "sequences/runs/run_log.h"
 
 namespace eigenlight {

@@ -9,7 +9,7 @@
 
 #include "render/live_source.h"
 #include "sequences/runs/flythrough.h"
-#include "sequences/runs/scene_source.h"
+#include "sequences/runs/open_scene.h"
 #include "sequences/stress/eigen_state.h"
 #include "tests/reference/pipeline/eigen_twin.h"
 

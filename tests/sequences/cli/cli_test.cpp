@@ -163,7 +163,7 @@ TEST_F(CliTest, EachMistakeIsOneLineAndMakesNothing) {
       {{"--size", "10x10x"}, "size '10x10x': expected WIDTHxHEIGHT"},
       {{"--size", "65536x65536"}, "size 65536x65536: needs about"},
       {{"--spp", "0"}, "spp 0: expected 1 to 65536"},
-      {{"--spp", "many"}, "Could not convert: --spp = many; see eigenlight --help"},
+      {{"--spp", "many"}, "Could not convert: --spp = many; see eigenlight render --help"},
       {{"--bases", "9"}, "bases 9: expected 1 to 8"},
       {{"--bounces", "0"}, "bounces 0: expected 1 to 64"},
       {{"--seed", "-1"}, "seed -1: expected 0 to 2147483647"},
@@ -176,7 +176,7 @@ TEST_F(CliTest, EachMistakeIsOneLineAndMakesNothing) {
       {{"--aa", "fxaa"},
        "unknown aa 'fxaa'; known: none, lookup, sraa, sraa-geometry, supersample:N"},
       {{"--aa", "supersample:1"}, "aa 'supersample:1': expected supersample:N with N from 2"},
-      {{"--frobnicate"}, "not expected: --frobnicate; see eigenlight --help"},
+      {{"--frobnicate"}, "not expected: --frobnicate; see eigenlight render --help"},
       {{"--without", "magic"}, "method 'eigenlight' has no part 'magic' to turn off; it has: "},
   };
   for (const Mistake& mistake : mistakes) {

@@ -198,7 +198,7 @@ TEST_F(CompareCommand, EachMistakeIsOneLineAndMakesNothing) {
   const std::pair<std::vector<std::string>, const char*> mistakes[] = {
       {{"--methods", "magic"}, "unknown method 'magic'; known: eigenlight, "},
       {{"--methods", "mean,,noisy"}, "methods 'mean,,noisy': expected names with one comma"},
-      {{"--methods", "mean,mean"}, "'mean' stands there twice"},
+      {{"--methods", "mean,mean"}, "'mean' is named twice"},
       {{"--spp", "1,many"}, "spp '1,many': 'many' is not a number from 1 to 65536"},
       {{"--spp", "0"}, "'0' is not a number from 1 to 65536"},
       {{"--frames", "2,4"}, "frames '2,4': expected one range without gaps"},

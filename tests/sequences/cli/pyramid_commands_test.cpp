@@ -35,9 +35,16 @@ TEST(TrainPyramidCommand, NamesAFileThatIsMissingOrTooSmall) {
   EXPECT_THAT(missing.err, HasSubstr("no/such.png"));
   write_painted_picture(dir / "small.exr", {40, 36});
   const Outcome small = call_with(words, {dir / "small.exr"});
-  EXPECT_EQ(small.status, 1);
+  EXPECT_EQ(small.status, 2);
   EXPECT_THAT(small.err, HasSubstr("small.exr: 40x36 pixels, expected 128"));
   EXPECT_FALSE(std::filesystem::exists(table));
+}
+
+TEST(TrainPyramidCommand, MissingDirectoryIsReportedBeforeTraining) {
+  const TempDir dir;
+  const Outcome outcome = call({"train-pyramid", "-o", dir / "no/table.cpp"});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("no/table.cpp: cannot write: "));
 }
 
 TEST(TrainPyramidCommand, BadOptionsAreNamed) {

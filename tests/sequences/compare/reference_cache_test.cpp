@@ -8,7 +8,7 @@
 
 #include "sequences/files/atomic_file.h"
 #include "sequences/runs/flythrough.h"
-#include "sequences/runs/scene_source.h"
+#include "sequences/runs/open_scene.h"
 #include "tests/support/compare.h"
 #include "tests/support/temp_dir.h"
 

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "sequences/runs/flythrough.h"
-#include "sequences/runs/scene_source.h"
+#include "sequences/runs/open_scene.h"
 #include "temporal/methods.h"
 #include "tests/support/compare.h"
 

@@ -21,8 +21,7 @@ std::size_t files_in(const std::filesystem::path& dir) {
   return count;
 }
 
-// While it lives, no file of this process can grow beyond `bytes`: a disk that fills up, without
-// needing one.
+// While it lives, no file of this process can grow beyond `bytes`, as on a full disk.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
@@ -40,7 +39,7 @@ class FileSizeLimit {
   void (*handler_)(int);
 };
 
-TEST(AtomicFile, ReplacesAFileAndLeavesNoOther) {
+TEST(AtomicFile, ReplacesAFileAndLeavesNoTemporary) {
   const TempDir dir;
   write_file_atomically(dir / "a", "first");
   write_file_atomically(dir / "a", "second");
@@ -48,7 +47,7 @@ TEST(AtomicFile, ReplacesAFileAndLeavesNoOther) {
   EXPECT_EQ(files_in(dir.path()), 1u);
 }
 
-TEST(AtomicFile, AFailedWriteKeepsTheOldFileAndLeavesNoOther) {
+TEST(AtomicFile, FailedWriteKeepsTheOldFileAndLeavesNoTemporary) {
   const TempDir dir;
   write_file_atomically(dir / "a", "old");
   const std::string large(1 << 16, 'x');
@@ -61,7 +60,7 @@ TEST(AtomicFile, AFailedWriteKeepsTheOldFileAndLeavesNoOther) {
   EXPECT_EQ(files_in(dir.path()), 1u);
 }
 
-TEST(AtomicFile, NamesThePathAndTheReason) {
+TEST(AtomicFile, ErrorsNamePathAndReason) {
   const TempDir dir;
   EXPECT_THAT([&] { write_file_atomically(dir / "no/a", "x"); },
               ThrowsMessage<std::runtime_error>(HasSubstr("no/a: cannot write: No such file")));

@@ -19,7 +19,7 @@ Checkpoint example() {
   return checkpoint;
 }
 
-TEST(Checkpoint, ComesBack) {
+TEST(Checkpoint, ReadsWhatWasWritten) {
   const TempDir dir;
   for (Checkpoint checkpoint : {example(), Checkpoint{}}) {
     write_checkpoint(dir / "state.bin", checkpoint);
@@ -30,7 +30,7 @@ TEST(Checkpoint, ComesBack) {
   }
 }
 
-TEST(Checkpoint, EveryFlippedBitIsNoticed) {
+TEST(Checkpoint, FlippedBitInAnyByteIsAnError) {
   const TempDir dir;
   write_checkpoint(dir / "state.bin", example());
   const std::string bytes = read_whole_file(dir / "state.bin");
@@ -42,7 +42,7 @@ TEST(Checkpoint, EveryFlippedBitIsNoticed) {
   }
 }
 
-TEST(Checkpoint, EveryLengthButItsOwnIsNoticed) {
+TEST(Checkpoint, WrongLengthIsAnError) {
   const TempDir dir;
   write_checkpoint(dir / "state.bin", example());
   const std::string bytes = read_whole_file(dir / "state.bin");
@@ -55,7 +55,7 @@ TEST(Checkpoint, EveryLengthButItsOwnIsNoticed) {
   EXPECT_THROW((void)read_checkpoint(dir / "long.bin"), CheckpointError);
 }
 
-TEST(Checkpoint, SaysWhatIsWrong) {
+TEST(Checkpoint, ErrorsNameTheFault) {
   const TempDir dir;
   EXPECT_THAT([&] { (void)read_checkpoint(dir / "none.bin"); },
               ThrowsMessage<std::runtime_error>(HasSubstr("none.bin: cannot read")));

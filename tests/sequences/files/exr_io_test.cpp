@@ -28,7 +28,7 @@ Plane<float> ramp(Extent extent, float scale) {
   return plane;
 }
 
-TEST(ExrIo, GivesBackWhatWasWritten) {
+TEST(ExrIo, ReadsWhatWasWritten) {
   const TempDir dir;
   const Extent extent{37, 19};
   // Multiples of 1/8 below 128 are exact in half precision.
@@ -98,13 +98,13 @@ TEST(ExrIo, KeepsAttributes) {
     EXPECT_EQ(*read, attribute.value) << attribute.name;
   }
   EXPECT_FALSE(reader.attribute("nothing").has_value());
-  // The names that other programs look for are those in the file, as the standard spells them.
+  // The file spells the names as the standard does, for other programs.
   const std::string bytes = read_whole_file(dir / "a.exr");
   EXPECT_THAT(bytes, HasSubstr(std::string("worldToCamera\0m44f", 18)));
   EXPECT_THAT(bytes, HasSubstr(std::string("worldToNDC\0m44f", 15)));
 }
 
-TEST(ExrIo, WritesTheSameBytesForAnyNumberOfThreads) {
+TEST(ExrIo, BytesAreEqualForAnyNumberOfThreads) {
   const TempDir dir;
   const Plane<float> plane = ramp({190, 107}, 0.37f);
   const ExrChannel channels[] = {{"R", ExrType::kHalf, &plane}, {"Z", ExrType::kFloat, &plane}};
@@ -116,7 +116,7 @@ TEST(ExrIo, WritesTheSameBytesForAnyNumberOfThreads) {
   EXPECT_TRUE(read_whole_file(dir / "one.exr") == read_whole_file(dir / "three.exr"));
 }
 
-TEST(ExrIo, NamesFileAndLayerOfAFault) {
+TEST(ExrIo, ErrorsNameFileAndLayer) {
   const TempDir dir;
   EXPECT_THAT([&] { (void)ExrReader(dir / "none.exr"); },
               ThrowsMessage<std::runtime_error>(HasSubstr("none.exr: no such file")));
@@ -137,14 +137,14 @@ TEST(ExrIo, NamesFileAndLayerOfAFault) {
   EXPECT_THAT([&] { (void)reader.read_uint("Z"); },
               ThrowsMessage<std::runtime_error>(HasSubstr("channel 'Z' is not of type uint")));
 
-  // Cut short: whatever is reported, nothing is taken for pixels.
+  // A truncated file is an error of any kind, never pixels.
   const std::string bytes = read_whole_file(dir / "a.exr");
   write_file_atomically(dir / "short.exr", bytes.substr(0, bytes.size() / 2));
   EXPECT_THAT([&] { (void)ExrReader(dir / "short.exr").read("Z"); },
               ThrowsMessage<std::runtime_error>(HasSubstr("short.exr: ")));
 }
 
-TEST(ExrIo, RefusesPlanesOfDifferentSizes) {
+TEST(ExrIo, PlanesOfDifferentSizesAreAnError) {
   const TempDir dir;
   const Plane<float> a({4, 4});
   const Plane<float> b({4, 5});

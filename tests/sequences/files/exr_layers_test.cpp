@@ -14,14 +14,14 @@ TEST(ExrLayers, SplitsAtTheLastDot) {
   EXPECT_EQ(split_channel("Z").channel, "");
 }
 
-TEST(ExrLayers, OrdersChannelsAsPeopleSayThem) {
+TEST(ExrLayers, ChannelOrderIsRgbaThenXyzw) {
   EXPECT_LT(channel_order("R"), channel_order("G"));
   EXPECT_LT(channel_order("B"), channel_order("A"));
   EXPECT_LT(channel_order("X"), channel_order("Y"));
   EXPECT_LT(channel_order("W"), channel_order("T"));
 }
 
-TEST(ExrLayers, PrefersTheExactName) {
+TEST(ExrLayers, ExactNameIsPreferred) {
   const std::vector<std::string> layers{"", "x.N", "N", "Normal"};
   EXPECT_EQ(find_layer(layers, "N"), "N");
   EXPECT_EQ(find_layer(layers, "color"), "");
@@ -29,7 +29,7 @@ TEST(ExrLayers, PrefersTheExactName) {
   EXPECT_EQ(find_layer(layers, "motion"), std::nullopt);
 }
 
-TEST(ExrLayers, KnowsOtherRenderers) {
+TEST(ExrLayers, NamesOfOtherRenderersAreFound) {
   const std::vector<std::string> cycles{
       "ViewLayer.Combined", "ViewLayer.Denoising Albedo", "ViewLayer.DiffCol", "ViewLayer.DiffInd",
       "ViewLayer.Normal",   "ViewLayer.Vector",           "ViewLayer.Depth"};

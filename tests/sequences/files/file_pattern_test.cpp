@@ -7,7 +7,7 @@
 namespace eigenlight {
 namespace {
 
-TEST(FilePattern, NamesFrames) {
+TEST(FilePattern, NameHoldsTheFrameNumber) {
   EXPECT_EQ(FilePattern("frame.####.exr").name(12), "frame.0012.exr");
   EXPECT_EQ(FilePattern("a.#.exr").name(12), "a.0012.exr");
   EXPECT_EQ(FilePattern("a.##.exr").name(123), "a.123.exr");
@@ -19,7 +19,7 @@ TEST(FilePattern, NamesFrames) {
   EXPECT_EQ(FilePattern("a.####").name(-10), "a.-010");
 }
 
-TEST(FilePattern, FindsFramesInNames) {
+TEST(FilePattern, FrameNumberIsReadFromAName) {
   const FilePattern pattern("frame.####.exr");
   for (const int frame : {-10, 0, 7, 9999, 10000, 123456}) {
     EXPECT_EQ(pattern.frame(pattern.name(frame)), frame);
@@ -30,7 +30,7 @@ TEST(FilePattern, FindsFramesInNames) {
   }
 }
 
-TEST(FilePattern, NeedsExactlyOnePlace) {
+TEST(FilePattern, PatternNeedsExactlyOnePlace) {
   EXPECT_THROW(FilePattern("frame.exr"), std::invalid_argument);
   EXPECT_THROW(FilePattern("##.##"), std::invalid_argument);
   EXPECT_THROW(FilePattern("#.%d"), std::invalid_argument);

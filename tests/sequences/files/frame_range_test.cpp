@@ -10,7 +10,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-TEST(FrameRange, TakesEveryUsualForm) {
+TEST(FrameRange, ParsesAllForms) {
   EXPECT_THAT(parse_frame_range("7"), ElementsAre(7));
   EXPECT_THAT(parse_frame_range("1-4"), ElementsAre(1, 2, 3, 4));
   EXPECT_THAT(parse_frame_range("1-3,20-22"), ElementsAre(1, 2, 3, 20, 21, 22));
@@ -22,7 +22,7 @@ TEST(FrameRange, TakesEveryUsualForm) {
   EXPECT_EQ(parse_frame_range("-10-100").size(), 111u);
 }
 
-TEST(FrameRange, NamesThePartThatIsWrong) {
+TEST(FrameRange, ErrorsNameTheWrongPart) {
   for (const char* text : {"", "a", "1-", "1-2x", "1-2x0", "1-2x-1", "1,,2", "1,", "1 - 2", "1.5",
                            "99999999999", "1-2-3", "x5"}) {
     EXPECT_THROW((void)parse_frame_range(text), std::invalid_argument) << text;
@@ -35,7 +35,7 @@ TEST(FrameRange, NamesThePartThatIsWrong) {
               ThrowsMessage<std::invalid_argument>(HasSubstr("more than 1000000 frames")));
 }
 
-TEST(FrameRange, FormatsWhatItParses) {
+TEST(FrameRange, FormattingReturnsTheParsedText) {
   for (const char* text : {"7", "1-10", "1-3,20-22", "1-11x5", "-2-1", "5-1", "10-2x4", "1,9"}) {
     EXPECT_EQ(format_frame_range(parse_frame_range(text)), text);
   }

@@ -36,7 +36,7 @@ void expect_picture(const PyramidUse<Edge>& use) {
   EXPECT_LE(high, 4.0f);  // x / (1 + L) of a color of one channel
 }
 
-TEST(PaperXu2024, UsesArePicturesWithAttributes) {
+TEST(PaperXu2024, UsesHavePicturesAndAttributes) {
   const Frame frame = cornell_frame();
   expect_picture(diffuse_use(frame, frame.lights[0].radiance, 1.0f));
   expect_picture(reflection_use(frame));
@@ -92,7 +92,7 @@ TEST(PaperXu2024, SeparablePassesAreExactWithoutEdges) {
   }
 }
 
-TEST(PaperXu2024, LikenessIsOfThePixelsThatCount) {
+TEST(PaperXu2024, LikenessCountsPixelsWithWeight) {
   Planes<3> a = make_planes<3>({16, 16}), b = make_planes<3>({16, 16});
   Plane<float> weight({16, 16});
   for (std::size_t c = 0; c < 3; ++c) a[c].fill(0.6f), b[c].fill(0.5f);
@@ -107,7 +107,7 @@ TEST(PaperXu2024, LikenessIsOfThePixelsThatCount) {
 }
 
 // The whole at the size of a stamp: every claim has a figure, and every table its rows.
-TEST(PaperXu2024, ReportsEveryClaim) {
+TEST(PaperXu2024, ReportHasAFigureForEachClaim) {
   std::vector<std::string> steps;
   const PaperRun run{
       {48, 27}, {0, 1, 2, 3, 4, 5, 6, 7}, [&](const std::string& what) { steps.push_back(what); }};

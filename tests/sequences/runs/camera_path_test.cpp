@@ -24,7 +24,7 @@ TEST(CameraPath, PassesThroughItsKeys) {
   }
 }
 
-TEST(CameraPath, TurnsBackAtItsEndsForEver) {
+TEST(CameraPath, TurnsBackAtItsEnds) {
   const CameraPath path(kKeys, 24.0f);
   for (int frame = 0; frame <= path.length(); ++frame) {
     for (const int same : {-frame, frame + path.period(), frame - 3 * path.period()}) {
@@ -46,12 +46,12 @@ TEST(CameraPath, KeepsConstantSpeedOnALine) {
   }
 }
 
-TEST(CameraPath, OneKeyStandsStill) {
+TEST(CameraPath, OneKeyGivesAStaticCamera) {
   const CameraPath path({{3.0f, {1, 2, 3}, {4, 5, 6}}}, 24.0f);
   for (const int frame : {-7, 0, 100}) EXPECT_EQ(path.at(frame).eye, glm::vec3(1, 2, 3));
 }
 
-TEST(CameraPath, RefusesBadKeys) {
+TEST(CameraPath, BadKeysAreErrors) {
   EXPECT_THROW(CameraPath({}, 24.0f), std::invalid_argument);
   EXPECT_THROW(CameraPath({kKeys[1], kKeys[0]}, 24.0f), std::invalid_argument);
   std::vector<CameraKey> broken = kKeys;

@@ -88,7 +88,7 @@ TEST_P(CrossingObjects, CrossTheViewSmoothly) {
 INSTANTIATE_TEST_SUITE_P(All, CrossingObjects, testing::ValuesIn(builtin_scenes()),
                          [](const auto& built) { return std::string(built.param.name); });
 
-TEST(Flythrough, PerturbsWhatItIsToldTo) {
+TEST(Flythrough, PerturbsOnlyWhatIsAsked) {
   const Scene plain = make_builtin_scene("cornell");
   for (const auto& [name, lights, objects] : {std::tuple{"none", false, 0U},
                                               {"lights", true, 0U},
@@ -103,7 +103,7 @@ TEST(Flythrough, PerturbsWhatItIsToldTo) {
   }
 }
 
-TEST(Flythrough, StepsItsLightAtTheFrameThatItIsTold) {
+TEST(Flythrough, LightStepsAtTheGivenFrame) {
   const Scene plain = make_builtin_scene("cornell");
   for (const auto& [text, frame] : {std::pair{"step", 24}, std::pair{"step:7", 7}}) {
     Scene scene = plain;
@@ -115,7 +115,7 @@ TEST(Flythrough, StepsItsLightAtTheFrameThatItIsTold) {
   }
 }
 
-TEST(Flythrough, PerturbationsAreReadAndWritten) {
+TEST(Flythrough, PerturbationsAreParsedAndFormatted) {
   for (const char* text : {"none", "lights", "objects", "all", "step:1", "step:1000000"}) {
     EXPECT_EQ(format_perturbation(parse_perturbation(text)), text);
   }
@@ -126,7 +126,7 @@ TEST(Flythrough, PerturbationsAreReadAndWritten) {
   }
 }
 
-TEST(Flythrough, IsTheSameEveryTime) {
+TEST(Flythrough, StatesDependOnTheFrameNumberAlone) {
   Scene a = make_builtin_scene("cornell"), b = a;
   const auto first = make_flythrough(a, Perturbation::kAll, kExtent);
   const auto second = make_flythrough(b, Perturbation::kAll, kExtent);
@@ -138,7 +138,7 @@ TEST(Flythrough, IsTheSameEveryTime) {
   }
 }
 
-TEST(Flythrough, RefusesScenesWithoutKeysOrTriangles) {
+TEST(Flythrough, SceneWithoutKeysOrTrianglesIsAnError) {
   Scene scene = make_builtin_scene("cornell");
   scene.camera_path.clear();
   EXPECT_THROW((void)make_flythrough(scene, Perturbation::kNone, kExtent), std::invalid_argument);
@@ -147,7 +147,7 @@ TEST(Flythrough, RefusesScenesWithoutKeysOrTriangles) {
   EXPECT_THROW((void)make_flythrough(scene, Perturbation::kNone, kExtent), std::invalid_argument);
 }
 
-TEST(Flythrough, UnknownPerturbationListsTheKnownOnes) {
+TEST(Flythrough, UnknownPerturbationListsKnownOnes) {
   try {
     (void)parse_perturbation("wind");
     FAIL() << "expected an exception";

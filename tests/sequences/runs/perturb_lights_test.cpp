@@ -131,7 +131,7 @@ glm::vec2 factor(const Lights& now, const Lights& rest) {
 
 class StepInLight : public testing::TestWithParam<BuiltinScene> {};
 
-TEST_P(StepInLight, BrightensTheMainLightOnceAndForAll) {
+TEST_P(StepInLight, BrightensTheMainLightFromTheStepOn) {
   const Scene scene = GetParam().make();
   const LightStep step(scene, 24);
   for (const int frame : {-5, 0, 23}) {
@@ -145,7 +145,7 @@ TEST_P(StepInLight, BrightensTheMainLightOnceAndForAll) {
 INSTANTIATE_TEST_SUITE_P(All, StepInLight, testing::ValuesIn(builtin_scenes()),
                          [](const auto& built) { return std::string(built.param.name); });
 
-TEST(LightStep, OtherLightsStay) {
+TEST(LightStep, OtherLightsDoNotStep) {
   Scene scene;
   scene.lights.rects.push_back({{0, 3, 0}, {0, 0, 1}, {1, 0, 0}, glm::vec3(5)});
   scene.lights.spheres.push_back({{5, 3, 0}, 4.0f, glm::vec3(6)});
@@ -156,7 +156,7 @@ TEST(LightStep, OtherLightsStay) {
   EXPECT_EQ(step.at(1).sky, scene.lights.sky);
 }
 
-TEST(LightStep, SkyAndEnvironmentAloneStep) {
+TEST(LightStep, SkyAndEnvironmentStepTogether) {
   Scene scene;
   scene.lights.sky = {1, 2, 3};
   const LightStep step(scene, 7);
@@ -165,7 +165,7 @@ TEST(LightStep, SkyAndEnvironmentAloneStep) {
   EXPECT_EQ(step.at(6).environment_scale, 1.0f);
 }
 
-TEST(LightPerturbation, SkyAlonePulses) {
+TEST(LightPerturbation, SkyPulsesWithoutMoving) {
   Scene scene;
   scene.lights.sky = {1, 2, 3};
   const LightPerturbation lights(scene);

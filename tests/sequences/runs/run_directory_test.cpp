@@ -37,7 +37,7 @@ class RunDirectoryTest : public testing::Test {
   FrameByFrame denoiser_{{{8, 8}, 3}, "noisy"};
 };
 
-TEST_F(RunDirectoryTest, ResumesWhereItWasSaved) {
+TEST_F(RunDirectoryTest, ResumesAfterTheSavedFrame) {
   const RunDirectory run(dir_.path(), kRun);
   run.begin();
   pretend_frame(4);
@@ -50,7 +50,7 @@ TEST_F(RunDirectoryTest, ResumesWhereItWasSaved) {
   EXPECT_EQ(run.resume(kFrames, denoiser_), 0u);
 }
 
-TEST_F(RunDirectoryTest, RefusesWhatIsNotItsOwn) {
+TEST_F(RunDirectoryTest, CheckpointOfAnotherRunIsAnError) {
   const RunDirectory run(dir_.path(), kRun);
   EXPECT_EQ(run.resume(kFrames, denoiser_), 0u);
   const std::string other = R"({"scene": "atrium", "spp": 8})";
@@ -72,7 +72,7 @@ TEST_F(RunDirectoryTest, RefusesWhatIsNotItsOwn) {
   EXPECT_THAT(refusal(kRun), HasSubstr("state.bin: state of 'noisy': found 'mean'"));
 }
 
-TEST_F(RunDirectoryTest, NamesADirectoryThatCannotBe) {
+TEST_F(RunDirectoryTest, DirectoryThatCannotBeMadeIsNamed) {
   std::ofstream(dir_ / "file") << "x";
   EXPECT_THAT([&] { RunDirectory(dir_ / "file", kRun); },
               ThrowsMessage<std::runtime_error>(HasSubstr("file: cannot make the directory: ")));

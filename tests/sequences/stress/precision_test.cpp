@@ -16,13 +16,13 @@ void expect_near_its_twin(const PrecisionScene& scene) {
   }
 }
 
-TEST(Precision, StaysNearTheDoubleTwinUnderSteadyLight) {
+TEST(Precision, FloatStaysNearDoubleInSteadyLight) {
   for (const char* name : {"cornell", "atrium", "gallery"}) {
     expect_near_its_twin({.name = name, .extent = {48, 27}, .frames = 24});
   }
 }
 
-TEST(Precision, StaysNearTheDoubleTwinUnderLightThatMoves) {
+TEST(Precision, FloatStaysNearDoubleInMovingLight) {
   expect_near_its_twin({"atrium", Perturbation::kLights, {48, 27}, 24});
 }
 

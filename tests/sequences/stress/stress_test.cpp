@@ -25,12 +25,12 @@ std::vector<StressCase> quick_cases() {
 class StressCaseTest : public testing::TestWithParam<StressCase> {};
 
 TEST_P(StressCaseTest, StaysWithinItsBound) {
-  Lab lab(0);
-  const StressFinding finding = GetParam().run(lab);
+  StressLog log(0);
+  const StressFinding finding = GetParam().run(log);
   EXPECT_TRUE(finding.pass()) << finding.figure << " against " << finding.bound << " ("
                               << GetParam().what << "; " << finding.where << "): eigenlight stress"
                               << " --case " << GetParam().name;
-  EXPECT_GT(lab.steps(), 0);
+  EXPECT_GT(log.steps(), 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, StressCaseTest, testing::ValuesIn(quick_cases()),
@@ -54,21 +54,21 @@ TEST(StressCases, NamesAreUniqueAndOfFormThemeDotCase) {
 // A failing case whose figure grows to frame 5 of the second run.
 TEST(StressRecording, KeepsTheWorstFrameTheOneBeforeAndTheHistory) {
   const TempDir dir;
-  const auto play = [](Lab& lab) {
+  const auto play = [](StressLog& log) {
     for (int run = 0; run < 2; ++run) {
-      StressRun frames(lab, {.extent = {9, 7}, .frames = 8});
+      StressRun frames(log, {.extent = {9, 7}, .frames = 8});
       while (frames.step()) {
         const int frame = frames.frame().index;
-        lab.note(run == 1 && frame <= 5 ? frame : 0.0, "here");
+        log.note(run == 1 && frame <= 5 ? frame : 0.0, "here");
       }
     }
   };
-  Lab first(3);
+  StressLog first(3);
   play(first);
   EXPECT_EQ(first.worst(), 5.0);
   EXPECT_EQ(first.worst_what(), "here");
   EXPECT_EQ(first.worst_step(), 8 + 6);
-  Lab again(3, StressRecording{dir.path(), first.worst_step()});
+  StressLog again(3, StressRecording{dir.path(), first.worst_step()});
   play(again);
   const ExrReader before(dir / "before.exr"), frame(dir / "frame.exr");
   EXPECT_EQ(std::get<int>(*before.attribute("eigenlight.frame")), 4);
@@ -77,13 +77,13 @@ TEST(StressRecording, KeepsTheWorstFrameTheOneBeforeAndTheHistory) {
   EXPECT_FALSE(read_whole_file(dir / "state.bin").empty());
 }
 
-TEST(Lab, NanIsTheWorstFigure) {
-  Lab lab(0);
-  lab.note(1.0);
-  lab.note(std::numeric_limits<double>::quiet_NaN(), "nan");
-  lab.note(1e300);
-  EXPECT_EQ(lab.worst_what(), "nan");
-  EXPECT_FALSE(worst_of(lab, 1e308).pass());
+TEST(StressLog, NanIsTheWorstFigure) {
+  StressLog log(0);
+  log.note(1.0);
+  log.note(std::numeric_limits<double>::quiet_NaN(), "nan");
+  log.note(1e300);
+  EXPECT_EQ(log.worst_what(), "nan");
+  EXPECT_FALSE(worst_of(log, 1e308).pass());
 }
 
 }  // namespace

@@ -96,7 +96,7 @@ TEST(HemsOptions, RejectsValuesOutOfRange) {
   EXPECT_THROW(Hems2010({{8, 8}, 1}, {.frames = 17}), std::invalid_argument);
   EXPECT_THROW(Hems2010({{8, 8}, 1}, {.radius = -1}), std::invalid_argument);
   EXPECT_THROW(Hems2010({{8, 8}, 1}, {.color = 0.0f}), std::invalid_argument);
-  EXPECT_THROW(Hems2010({{8, 8}, 1}, {.decay = kNan}), std::invalid_argument);
+  EXPECT_THROW(Hems2010({{8, 8}, 1}, {.color = kNan}), std::invalid_argument);
 }
 
 TEST(Hems2010, KeepsConstantLight) { expect_keeps_constant_light("hems2010", 1e-5f); }

@@ -25,7 +25,7 @@ TEST(TrackPca, MatchesTheSvdWithoutMissingPoints) {
   options.gain = [](int frame) { return 1.0f + 0.5f * std::sin(0.8f * static_cast<float>(frame)); };
   const std::vector<Frame> frames = all_frames(options);
   const PointTracks tracks = follow(frames);
-  const TrackPca pca(tracks, {.bases = 3, .frames_per_basis = 1, .equal_points = false});
+  const TrackPca pca(tracks, {.bases = 3, .frames_per_basis = 1});
 
   Eigen::MatrixXd all(3 * 24 * 16, 10);
   for (Eigen::Index t = 0; t < 10; ++t) {
@@ -49,22 +49,6 @@ TEST(TrackPca, MatchesTheSvdWithoutMissingPoints) {
       }
     }
   }
-}
-
-TEST(TrackPca, EqualPointsLimitOutliers) {
-  // Light that doubles in every second frame, and one pixel that is once 1000 times as bright.
-  AnalyticOptions options{.extent = {24, 16}, .frames = 8, .noise = 0.0f};
-  options.gain = [](int frame) { return frame % 2 == 0 ? 1.0f : 2.0f; };
-  std::vector<Frame> frames = all_frames(options);
-  for (auto& plane : frames[3].lights[0].radiance) plane(7, 7) = 1000.0f;
-  const PointTracks tracks = follow(frames);
-  const auto ratio = [&](bool equal) {
-    const TrackPca pca(tracks, {.bases = 1, .equal_points = equal});
-    return pca.weights()(5, 0) / pca.weights()(4, 0);
-  };
-  EXPECT_NEAR(ratio(true), 2.0, 0.05);
-  const TrackPca led(tracks, {.bases = 1, .equal_points = false});
-  EXPECT_GT(std::abs(led.weights()(3, 0)), 0.95);
 }
 
 TEST(TrackPca, RecoversAGainFromPartiallyVisiblePoints) {

@@ -1,4 +1,4 @@
-#include "sequences/runs/output.h"
+#include "sequences/runs/frame_writer.h"
 
 #include <fmt/format.h>
 
@@ -20,7 +20,7 @@ constexpr float kLargestHalf = 65504.0f;
   for (int y = 0; y < plane.height(); ++y) {
     const float* row = plane.row(y);
     for (int x = 0; x < plane.width(); ++x) {
-      // NaN compares false, and Inf has its own half.
+      // Half can hold NaN, which compares false, and Inf.
       if (std::isgreater(std::abs(row[x]), kLargestHalf) && !std::isinf(row[x])) return true;
     }
   }
@@ -55,7 +55,7 @@ std::string format_layers(const std::vector<Layer>& layers) {
 }
 
 ExrMatrix world_to_camera(const Camera& camera) {
-  // Row j of the view rotation is column j here; our y points down, the standard's up.
+  // Row j of the view rotation is column j here; our y points down, that of OpenEXR up.
   const glm::vec3 offset = camera.to_view(glm::vec3(0.0f));
   const float sign[3] = {1.0f, -1.0f, 1.0f};
   ExrMatrix matrix{};

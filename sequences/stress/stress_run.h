@@ -1,5 +1,4 @@
-// What a stress case works with: runs of a denoiser on analytic frames, and a record of the worst
-// that was seen.
+// Runs of a denoiser on analytic frames, and the worst figure of a stress case.
 #pragma once
 
 #include <filesystem>
@@ -14,24 +13,25 @@
 
 namespace eigenlight {
 
-/// Where to write what happened around one step of a case.
+/// Where to record the frames around one step of a case.
 struct StressRecording {
   std::filesystem::path directory;
-  int step = 0;  ///< of Lab::steps()
+  int step = 0;  ///< of StressLog::steps()
 };
 
-/// One execution of a case. Cases are functions of the seed alone, so that an execution can be
-/// repeated to record the frame at which it was worst.
-class Lab {
+/// The log of one execution of a case. Cases depend on the seed alone, so that an execution can be
+/// repeated to record its worst frame.
+class StressLog {
  public:
-  explicit Lab(std::uint32_t seed, std::optional<StressRecording> recording = {})
+  explicit StressLog(std::uint32_t seed, std::optional<StressRecording> recording = {})
       : seed_(seed), recording_(std::move(recording)) {}
 
   [[nodiscard]] std::uint32_t seed() const { return seed_; }
   /// Frames denoised so far, over all runs.
   [[nodiscard]] int steps() const { return steps_; }
 
-  /// Notes a figure of the last step; the largest is kept, and NaN is larger than all.
+  /// Notes a figure of the last step and what it belongs to. The largest is kept; NaN is larger
+  /// than all numbers.
   void note(double figure, std::string_view what = {});
   [[nodiscard]] double worst() const { return worst_; }
   [[nodiscard]] const std::string& worst_what() const { return worst_what_; }
@@ -51,14 +51,13 @@ class Lab {
 /// A denoiser on an analytic source.
 class StressRun {
  public:
-  /// `options.seed` is replaced by one that depends on it and on the seed of the lab, which must
-  /// outlive the run.
-  StressRun(Lab& lab, AnalyticOptions options, std::string_view method = "eigenlight",
+  /// The seed is mixed from `options.seed` and the seed of `log`, which must outlive the run.
+  StressRun(StressLog& log, AnalyticOptions options, std::string_view method = "eigenlight",
             int bases = 3);
 
   /// Denoises one frame; null at the end.
   [[nodiscard]] const Planes<3>* step();
-  /// All frames up to the last; the picture of that.
+  /// Denoises all remaining frames and returns the last picture.
   [[nodiscard]] const Planes<3>& finish();
   [[nodiscard]] const Planes<3>& picture() const { return *picture_; }
   [[nodiscard]] const Frame& frame() const { return denoiser_->frame(); }
@@ -73,7 +72,7 @@ class StressRun {
   const Planes<3>* recorded_step();
   void write(std::string_view name) const;
 
-  Lab& lab_;
+  StressLog& log_;
   AnalyticSource source_;
   std::unique_ptr<Denoiser> denoiser_;
   const Planes<3>* picture_ = nullptr;

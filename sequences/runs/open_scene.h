@@ -1,4 +1,4 @@
-// From what a user calls a scene to the scene.
+// Scenes by the names that users give them.
 #pragma once
 
 #include <cstdint>
@@ -14,12 +14,12 @@ struct SceneRequest {
   bool use_environment = false;
 };
 
-/// Adds to `notes` one line for each thing that was made up or left out. Throws
-/// std::invalid_argument listing the built-in scenes if `name` is neither one nor a file,
-/// std::runtime_error naming the file if it cannot be read.
+/// Adds a line to `notes` for each thing that was made up or left out. Throws std::invalid_argument
+/// listing the built-in scenes if `name` is neither a built-in scene nor a file, std::runtime_error
+/// naming the file if it cannot be read.
 [[nodiscard]] Scene open_scene(const SceneRequest& request, std::vector<std::string>& notes);
 
-/// XXH3-64 of all that a scene holds, so that a run is not resumed with another one.
+/// XXH3-64 of the content of a scene, so that a run is not resumed with another scene.
 [[nodiscard]] std::uint64_t scene_hash(const Scene& scene);
 
 }  // namespace eigenlight

@@ -1,4 +1,4 @@
-// What a run writes for each frame: one EXR file of named layers.
+// The EXR file of a frame, with named layers.
 #pragma once
 
 #include <cstdint>
@@ -14,21 +14,21 @@
 namespace eigenlight {
 
 /// The layers of a frame file. All radiance is linear Rec. 709 and not clamped.
-///   color     R,G,B        albedo * (direct + denoised indirect) + emission, or the antialiased
-///                          picture of the same; the unnamed layer
+///   color     R,G,B        albedo * (direct + denoised indirect) + emission, or its antialiased
+///                          picture; the unnamed layer
 ///   indirect  R,G,B        albedo * denoised indirect
 ///   noisy     R,G,B        albedo * raw indirect of the frame's own samples, NaN and Inf kept
 ///   direct    R,G,B        albedo * direct
-///   emission  R,G,B        of the first hit, or of the sky behind it
+///   emission  R,G,B        of the first hit, or of the sky
 ///   albedo    R,G,B
 ///   N         X,Y,Z        world space
 ///   Z                      depth along the view axis; +inf where there is no surface
 ///   P         X,Y,Z        world space
-///   motion    X,Y          pixels; what is seen at p was at p + motion in the frame before
+///   motion    X,Y          pixels; the point at p was at p + motion in the previous frame
 ///   id                     object, 0 where there is no surface
 ///   age                    frames' worth of samples behind the pixel
-/// So color = direct + indirect + emission, unless it is antialiased: all other layers are of the
-/// guide rays alone.
+/// color = direct + indirect + emission unless it is antialiased; all other layers come from the
+/// guide rays.
 enum class Layer {
   kColor,
   kIndirect,
@@ -44,7 +44,7 @@ enum class Layer {
   kAge
 };
 
-/// Layers of a comma-separated list, in the order above and once each; empty text: all. Throws
+/// The layers of a comma-separated list, in the order above and once each; empty text: all. Throws
 /// std::invalid_argument listing the known names.
 [[nodiscard]] std::vector<Layer> parse_layers(std::string_view text);
 [[nodiscard]] std::string format_layers(const std::vector<Layer>& layers);
@@ -55,20 +55,20 @@ enum class Layer {
 [[nodiscard]] ExrMatrix world_to_camera(const Camera& camera);
 [[nodiscard]] ExrMatrix world_to_ndc(const Camera& camera, Extent extent);
 
-/// What a denoiser made of a frame.
+/// A frame and its denoised light.
 struct DenoisedFrame {
   const Frame& frame;
   const Planes<3>& indirect;  ///< denoised, over albedo
   const Plane<float>& age;
-  const Planes<3>* picture = nullptr;  ///< the layer color, where it is not composed from the rest
+  const Planes<3>* picture = nullptr;  ///< the layer color; null: composed from the others
 };
 
-/// Writes frames into a directory. Radiance, albedo, N and age are half; Z, P and motion float; id
-/// uint. A layer that holds a finite value beyond the range of half (65504) is written as float in
+/// Writes frames into a directory. Radiance, albedo, N and age are half; Z, P and motion are float;
+/// id is uint. A layer with a finite value beyond the range of half (65504) is written as float in
 /// that frame, so that nothing is clamped and the layers still add up.
 class FrameWriter {
  public:
-  /// `attributes` go into every file, beside the camera and the frame number.
+  /// `attributes` go into every file, with the camera and the frame number.
   FrameWriter(std::filesystem::path directory, std::vector<Layer> layers,
               std::vector<ExrAttribute> attributes);
 

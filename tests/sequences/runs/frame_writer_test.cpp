@@ -1,4 +1,4 @@
-#include "sequences/runs/output.h"
+#include "sequences/runs/frame_writer.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ glm::vec3 transform(const ExrMatrix& matrix, const glm::vec3& point) {
   return glm::vec3(out[0], out[1], out[2]) / out[3];
 }
 
-TEST(Output, LayersAddUpToTheColor) {
+TEST(FrameWriter, LayersAddUpToTheColor) {
   const TempDir dir;
   AnalyticOptions options;
   options.sky_columns = 9;
@@ -82,7 +82,7 @@ TEST(Output, LayersAddUpToTheColor) {
   EXPECT_EQ(reader.read("P")[0](20, 20), example.frame.position[0](20, 20));
 }
 
-TEST(Output, APictureTakesThePlaceOfTheComposedColor) {
+TEST(FrameWriter, PictureReplacesTheComposedColor) {
   const TempDir dir;
   const Example example;
   Planes<3> picture = make_planes<3>(example.frame.extent());
@@ -96,7 +96,7 @@ TEST(Output, APictureTakesThePlaceOfTheComposedColor) {
   EXPECT_GT(reader.read_planes<3>("direct")[0](20, 20), 0.0f);
 }
 
-TEST(Output, NothingIsClampedToTheRangeOfHalf) {
+TEST(FrameWriter, ValuesBeyondHalfAreWrittenAsFloat) {
   const TempDir dir;
   Example example;
   example.frame.emission[1](2, 3) = 1e6f;
@@ -111,7 +111,7 @@ TEST(Output, NothingIsClampedToTheRangeOfHalf) {
   EXPECT_TRUE(std::isinf(reader.read("noisy")[0](5, 5)));
 }
 
-TEST(Output, WritesTheLayersThatWereChosen) {
+TEST(FrameWriter, WritesOnlyTheChosenLayers) {
   const TempDir dir;
   const Example example;
   FrameWriter writer(dir.path(), parse_layers("noisy,Z,noisy"), {{"eigenlight.spp", 3}});
@@ -126,7 +126,7 @@ TEST(Output, WritesTheLayersThatWereChosen) {
   EXPECT_EQ(format_layers(parse_layers("Z,color")), "color,Z");
 }
 
-TEST(Output, CameraMatricesFollowTheStandard) {
+TEST(FrameWriter, CameraMatricesFollowOpenExr) {
   const Extent extent{64, 36};
   const Camera camera = look_at({3, 2, 5}, {0, 1, -1}, {0, 1, 0}, 40.0f, extent);
   const glm::vec3 forward = glm::normalize(glm::vec3(0, 1, -1) - camera.eye);

@@ -1,4 +1,4 @@
-#include "sequences/runs/scene_source.h"
+#include "sequences/runs/open_scene.h"
 
 #include <fmt/format.h>
 #include <xxhash.h>
@@ -16,7 +16,7 @@
 namespace eigenlight {
 namespace {
 
-// Values one by one: whole structs would hash their padding too.
+// Hashes values one by one, because structs have padding.
 class SceneHash {
  public:
   SceneHash() { XXH3_64bits_reset(state_.get()); }
@@ -41,7 +41,7 @@ class SceneHash {
                                                                   XXH3_freeState};
 };
 
-// Those that are hashed as bytes have no padding.
+// Structs that are hashed as bytes have no padding.
 static_assert(sizeof(SunLight) == 28 && sizeof(AreaRect) == 48 && sizeof(SphereLight) == 28 &&
               sizeof(CameraKey) == 28 && sizeof(Instance) == 68);
 
