@@ -46,7 +46,7 @@ TEST(StressCommand, WritesMarkdownBelowAHeadWithDateAndMachine) {
             HasSubstr("| program | " + program_version() + " |"),
             HasSubstr("| machine | " + to_text(this_machine()) + " |"),
             HasSubstr("| result | 1 of 1 cases within their bounds, in 0.0 minutes |"),
-            HasSubstr("| `algebra.black` | frames without light: largest value shown | 20 | "
+            HasSubstr("| `algebra.black` | frames without light: largest output value | 20 | "
                       "0 | 0 | yes |\n")));
 }
 

@@ -7,6 +7,7 @@
 
 #include "sequences/files/atomic_file.h"
 #include "sequences/files/checkpoint.h"
+#include "sequences/files/file_pattern.h"
 #include "temporal/baselines/frame_by_frame.h"
 #include "tests/support/temp_dir.h"
 
