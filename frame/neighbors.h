@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cstddef>
 
 #include "frame/tiles.h"
 
@@ -14,7 +13,7 @@ void for_each_neighbor(const TileGrid& grid, int index, Body body) {
   const int column = index % grid.columns(), row = index / grid.columns();
   for (int y = std::max(row - 1, 0); y <= std::min(row + 1, grid.rows() - 1); ++y) {
     for (int x = std::max(column - 1, 0); x <= std::min(column + 1, grid.columns() - 1); ++x) {
-      body(static_cast<std::size_t>(y * grid.columns() + x));
+      body(y * grid.columns() + x);
     }
   }
 }

@@ -2,7 +2,6 @@
 // surface.
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include "frame/frame.h"
@@ -27,10 +26,10 @@ inline constexpr int kSegment = 64;
 /// / 2) of the previous frame. Weights of valid taps sum to 1; all four are 0 where no tap is valid
 /// (a new pixel) or the pixel shows no surface, and so is that of a tap outside the image.
 struct TapSegment {
-  alignas(64) std::array<std::array<float, kSegment>, 4> weight;
-  alignas(64) std::array<std::int32_t, kSegment> x, y;
+  alignas(64) float weight[4][kSegment];
+  alignas(64) std::int32_t x[kSegment], y[kSegment];
 
-  [[nodiscard]] glm::ivec2 tap(int t, std::size_t i) const { return {x[i] + t % 2, y[i] + t / 2}; }
+  [[nodiscard]] glm::ivec2 tap(int t, int i) const { return {x[i] + t % 2, y[i] + t / 2}; }
 };
 
 /// The previous frame's surface, as far as taps need it.

@@ -1,79 +1,57 @@
 #include <algorithm>
 
-#include "frame/prefetch.h"
 #include "reproject/warp.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "reproject/warp_simd.cpp"
 #include <hwy/foreach_target.h>
-#include <hwy/highway.h>
+
+#include "reproject/tap_runs-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace eigenlight::HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
-using F = hn::ScalableTag<float>;
-using I = hn::RebindToSigned<F>;
-using VF = hn::Vec<F>;
-using VI = hn::Vec<I>;
-using MF = hn::Mask<F>;
-
-// Pixels of a vector whose taps stand side by side, the upper left one of lane i at (x + i, y): of
-// each tap those where it counts.
-struct Run {
-  int x, y;
+// The weights of a vector of pixels, and for each of the four taps the lanes where it counts.
+struct Taps {
+  VF weight[4];
   MF counts[4];
 };
 
-// Takes the run of the first of the lanes that are `left` from them.
-Run TakeRun(const TapSegment& taps, std::size_t at, const VF (&weight)[4], MF& left) {
-  const F d;
-  const I di;
-  const std::size_t first = hn::FindKnownFirstTrue(d, left);
-  Run run{taps.x[at + first] - static_cast<int>(first), taps.y[at + first], {}};
-  const VI x = hn::Sub(hn::Load(di, taps.x.data() + at), hn::Iota(di, 0));
-  const VI y = hn::Load(di, taps.y.data() + at);
-  const auto same = hn::And(hn::Eq(x, hn::Set(di, run.x)), hn::Eq(y, hn::Set(di, run.y)));
-  const MF lanes = hn::And(left, hn::RebindMask(d, same));
-  for (int t = 0; t < 4; ++t) run.counts[t] = hn::And(lanes, hn::Gt(weight[t], hn::Zero(d)));
-  left = hn::AndNot(lanes, left);
-  return run;
-}
-
-// Calls warp(run, is_first) for each run of the vector of pixels `at` a segment; none if no pixel
-// has taps, which is for `empty`.
+// Calls warp(run, taps, is_first) for each run of the vector of pixels that starts at number `at`
+// of a segment, or empty() if no pixel has taps.
 template <typename Warp, typename Empty>
-void ForEachRun(const TapSegment& taps, std::size_t at, const Warp& warp, const Empty& empty) {
-  const F d;
-  VF weight[4];
-  for (std::size_t t = 0; t < 4; ++t) weight[t] = hn::Load(d, taps.weight[t].data() + at);
-  MF left =
-      hn::Gt(hn::Add(hn::Add(weight[0], weight[1]), hn::Add(weight[2], weight[3])), hn::Zero(d));
-  if (hn::AllFalse(d, left)) return empty();
-  for (bool is_first = true; !hn::AllFalse(d, left); is_first = false) {
-    warp(TakeRun(taps, at, weight, left), weight, is_first);
-  }
+HWY_INLINE void ForEachWarp(const TapSegment& segment, int at, const Warp& warp,
+                            const Empty& empty) {
+  Taps taps;
+  for (int t = 0; t < 4; ++t) taps.weight[t] = Load(F(), segment.weight[t] + at);
+  const VF sum = Add(Add(taps.weight[0], taps.weight[1]), Add(taps.weight[2], taps.weight[3]));
+  const MF some = Gt(sum, Zero());
+  if (AllFalse(F(), some)) return empty();
+  bool is_first = true;
+  ForEachRun(segment, at, some, [&](const TapRun& run) {
+    for (int t = 0; t < 4; ++t) taps.counts[t] = And(run.lanes, Gt(taps.weight[t], Zero()));
+    warp(run, taps, is_first);
+    is_first = false;
+  });
 }
 
-// What a tap of a run takes from two blocks: the lanes up to the end of one, the rest from the
-// next.
-struct Terms {
+// Where the lanes of each tap of a run lie: those up to the end of a block there, the rest in the
+// next block.
+struct Sources {
   const float* from[8];
   MF counts[8];
 
-  Terms(const BasisField& field, const Run& run) {
-    const F d;
+  Sources(const BasisField& field, const TapRun& run, const Taps& taps) {
     const int last_x = field.extent().width - 1, last_y = field.extent().height - 1;
-    const VF lane = hn::Iota(d, 0.0f);
     for (int t = 0; t < 4; ++t) {
       const int x = run.x + t % 2, y = std::clamp(run.y + t / 2, 0, last_y);
       // Rounds down also where x is negative.
       const int start = x & ~(kBlock - 1), end = start + kBlock;
-      const MF first = hn::Lt(lane, hn::Set(d, static_cast<float>(end - x)));
-      counts[2 * t] = hn::And(first, run.counts[t]);
-      counts[2 * t + 1] = hn::AndNot(first, run.counts[t]);
-      // Nothing counts in blocks beside the image: any other will do.
+      const MF first = Lt(Iota(0), Set(end - x));
+      counts[2 * t] = And(first, taps.counts[t]);
+      counts[2 * t + 1] = AndNot(first, taps.counts[t]);
+      // No lane counts in a block beside the image: any block stands in for it.
       const auto block = [&](int at) { return field.at(at >= 0 && at <= last_x ? at : 0, y); };
       from[2 * t] = block(start) + (x - start);
       from[2 * t + 1] = block(end) - (end - x);
@@ -81,70 +59,65 @@ struct Terms {
   }
 };
 
-// Of the pixels from x on, those of a run; the others get 0 if it is the first.
-void WarpBlocks(const BasisField& from, const Run& run, const VF (&weights)[4], bool is_first,
+// Warps the lanes of a run. If it is the first of its vector, the other lanes become 0.
+void WarpBlocks(const BasisField& from, const TapRun& run, const Taps& taps, bool is_first,
                 float* to) {
   const F d;
-  const Terms terms(from, run);
+  const Sources sources(from, run, taps);
   for (int j = 0; j < kBlock * from.lines(); j += kBlock) {
-    VF sum = is_first ? hn::Zero(d) : hn::Load(d, to + j), other = hn::Zero(d);
-    const auto term = [&](int t) {
-      return hn::IfThenElseZero(terms.counts[t], hn::LoadU(d, terms.from[t] + j));
+    VF sum = is_first ? Zero() : Load(d, to + j), other = Zero();
+    const auto term = [&](int s) {
+      return IfThenElseZero(sources.counts[s], LoadU(d, sources.from[s] + j));
     };
     for (int t = 0; t < 4; ++t) {
-      sum = hn::MulAdd(weights[t], term(2 * t), sum);
-      other = hn::MulAdd(weights[t], term(2 * t + 1), other);
+      sum = MulAdd(taps.weight[t], term(2 * t), sum);
+      other = MulAdd(taps.weight[t], term(2 * t + 1), other);
     }
-    hn::Store(hn::Add(sum, other), d, to + j);
+    Store(Add(sum, other), d, to + j);
   }
 }
 
 void WarpBases(const BasisField& from, const TapSegment& taps, const Rect& row, BasisField& to) {
-  const F d;
-  for (int x = row.x0; x < row.x1; x += static_cast<int>(hn::Lanes(d))) {
-    float* out = to.at(x, row.y0);
-    prefetch_below(to, x, row.y0);
-    ForEachRun(
-        taps, static_cast<std::size_t>(x - row.x0),
-        [&](const Run& run, const VF(&weights)[4], bool is_first) {
+  ForEachVector(row, [&](int x, int y) {
+    float* out = to.at(x, y);
+    prefetch_below(to, x, y);
+    ForEachWarp(
+        taps, x - row.x0,
+        [&](const TapRun& run, const Taps& own, bool is_first) {
           prefetch_below(from, run.x, run.y + 1);
-          WarpBlocks(from, run, weights, is_first, out);
+          WarpBlocks(from, run, own, is_first, out);
         },
         [&] {
-          for (int j = 0; j < to.lines(); ++j) hn::Store(hn::Zero(d), d, out + kBlock * j);
+          for (int j = 0; j < to.lines(); ++j) Store(Zero(), F(), out + kBlock * j);
         });
-  }
+  });
 }
 
-// What lanes that do not count load, which may lie beside the image, is left out.
-VF WarpVector(const Plane<float>& from, const Run& run, const VF (&weights)[4]) {
-  const F d;
+// Lanes that do not count may read beside the image.
+VF WarpVector(const Plane<float>& from, const TapRun& run, const Taps& taps) {
   const int last = from.height() - 1;
-  VF sum = hn::Zero(d);
+  VF sum = Zero();
   for (int t = 0; t < 4; ++t) {
-    const float* row = from.row(std::clamp(run.y + t / 2, 0, last));
-    const VF value = hn::LoadU(d, row + run.x + t % 2);
-    sum = hn::MulAdd(weights[t], hn::IfThenElseZero(run.counts[t], value), sum);
+    const VF value = Load(from, run.x + t % 2, std::clamp(run.y + t / 2, 0, last));
+    sum = MulAdd(taps.weight[t], IfThenElseZero(taps.counts[t], value), sum);
   }
   return sum;
 }
 
 void WarpPlane(const Plane<float>& from, const TapSegment& taps, const Rect& row,
                Plane<float>& to) {
-  const F d;
   const int last = from.height() - 1;
-  for (int x = row.x0; x < row.x1; x += static_cast<int>(hn::Lanes(d))) {
-    float* out = to.at(x, row.y0);
-    prefetch_below(to, x, row.y0);
-    ForEachRun(
-        taps, static_cast<std::size_t>(x - row.x0),
-        [&](const Run& run, const VF(&weights)[4], bool is_first) {
+  ForEachVector(row, [&](int x, int y) {
+    prefetch_below(to, x, y);
+    ForEachWarp(
+        taps, x - row.x0,
+        [&](const TapRun& run, const Taps& own, bool is_first) {
           prefetch_below(from, run.x, std::clamp(run.y + 1, 0, last));
-          const VF sum = WarpVector(from, run, weights);
-          hn::Store(is_first ? sum : hn::Add(hn::Load(d, out), sum), d, out);
+          const VF sum = WarpVector(from, run, own);
+          Store(is_first ? sum : Add(Load(to, x, y), sum), to, x, y);
         },
-        [&] { hn::Store(hn::Zero(d), d, out); });
-  }
+        [&] { Store(Zero(), to, x, y); });
+  });
 }
 
 }  // namespace

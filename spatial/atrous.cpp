@@ -46,7 +46,6 @@ std::int64_t surface_pixels(const FrameInput& frame, const Tile& tile) {
 
 void AtrousOptions::validate() const {
   EL_CHECK(passes >= 1 && passes <= 6, "passes {}: expected 1 to 6", passes);
-  EL_CHECK(radius == 1 || radius == 2, "radius {}: expected 1 or 2", radius);
   EL_CHECK(luminance_sigmas > 0.0f && (luminance_sigmas <= 100.0f || !looks_at_light()),
            "luminance_sigmas {}: expected (0, 100] or inf", luminance_sigmas);
   EL_CHECK(earlier_sigmas > 0.0f && earlier_sigmas <= 100.0f,
@@ -63,8 +62,8 @@ Atrous::Atrous(Extent extent, const AtrousOptions& options)
       planar_(extent, options.planar_tolerance()),
       scratch_color_(make_planes<3>(extent)),
       scratch_variance_(extent),
-      noisy_(static_cast<std::size_t>(grid_.count())),
-      skipped_(noisy_.size()) {}
+      noisy_(grid_),
+      skipped_(grid_) {}
 
 void Atrous::check(const FrameInput& guides, const Planes<3>& color, const Plane<float>& variance,
                    const Plane<float>* earlier) const {
@@ -75,7 +74,7 @@ void Atrous::check(const FrameInput& guides, const Planes<3>& color, const Plane
            extent.height);
 }
 
-void Atrous::find_planes(const FrameInput& guides, std::span<const std::uint8_t> wanted) {
+void Atrous::find_planes(const FrameInput& guides, const PerTile<std::uint8_t>& wanted) {
   if (options_.skip_planar) {
     planar_.find(guides, wanted);
   } else {
@@ -86,9 +85,7 @@ void Atrous::find_planes(const FrameInput& guides, std::span<const std::uint8_t>
 void Atrous::run_pass(const Pass& in, int pass, Planes<3>& color, Plane<float>& variance) {
   const AtrousPass work{in.guides, options_,   in.planes,      1 << pass,        color,
                         variance,  in.earlier, scratch_color_, scratch_variance_};
-  const auto is_wanted = [&](const Tile& tile) {
-    return in.wanted[static_cast<std::size_t>(tile.index)] != 0;
-  };
+  const auto is_wanted = [&](const Tile& tile) { return in.wanted[tile] != 0; };
   for_each_strip(grid_, [&](const Strip& strip) {
     // Neighbors that are wanted alike are filtered as one.
     Tile area = grid_.tile(strip.area.index);
@@ -110,16 +107,15 @@ void Atrous::run_pass(const Pass& in, int pass, Planes<3>& color, Plane<float>& 
   std::swap(variance, scratch_variance_);
 }
 
-std::span<const std::uint8_t> Atrous::find_noisy(const FrameInput& guides, float quiet,
-                                                 const Planes<3>& color,
-                                                 const Plane<float>& variance) {
+const PerTile<std::uint8_t>& Atrous::find_noisy(const FrameInput& guides, float quiet,
+                                                const Planes<3>& color,
+                                                const Plane<float>& variance) {
   check(guides, color, variance, nullptr);
   for_each_tile(grid_, [&](const Tile& tile) {
-    const auto index = static_cast<std::size_t>(tile.index);
     const std::int64_t surface = surface_pixels(guides, tile);
     const bool noisy = surface > 0 && !is_quiet(color, variance, quiet, tile);
-    noisy_[index] = noisy ? 1 : 0;
-    skipped_[index] = noisy ? 0 : surface;
+    noisy_[tile] = noisy ? 1 : 0;
+    skipped_[tile] = noisy ? 0 : surface;
   });
   return noisy_;
 }
@@ -132,7 +128,7 @@ std::int64_t Atrous::filter_noisy(const FrameInput& guides, const PlanarBlocks& 
   run_pass(work, 0, color, variance);
   for (int pass = 1; pass < options_.passes; ++pass) {
     for_each_tile(grid_, [&](const Tile& tile) {
-      std::uint8_t& noisy = noisy_[static_cast<std::size_t>(tile.index)];
+      std::uint8_t& noisy = noisy_[tile];
       if (noisy != 0 && is_quiet(color, variance, quiet, tile)) noisy = 0;
     });
     run_pass(work, pass, color, variance);
@@ -146,11 +142,11 @@ std::int64_t Atrous::process(const FrameInput& guides, float quiet, Planes<3>& c
   return filter_noisy(guides, planar_, quiet, color, variance, earlier);
 }
 
-void Atrous::process(const FrameInput& guides, std::span<const std::uint8_t> wanted,
+void Atrous::process(const FrameInput& guides, const PerTile<std::uint8_t>& wanted,
                      Planes<3>& color, Plane<float>& variance) {
   check(guides, color, variance, nullptr);
-  EL_CHECK(wanted.size() == static_cast<std::size_t>(grid_.count()), "{} wanted flags for {} tiles",
-           wanted.size(), grid_.count());
+  EL_CHECK(wanted.size() == grid_.count(), "{} wanted flags for {} tiles", wanted.size(),
+           grid_.count());
   find_planes(guides, wanted);
   for (int pass = 0; pass < options_.passes; ++pass) {
     run_pass({guides, planar_, wanted, nullptr}, pass, color, variance);

@@ -3,8 +3,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <span>
-#include <vector>
 
 #include "frame/frame.h"
 #include "frame/tiles.h"
@@ -13,11 +11,10 @@
 namespace eigenlight {
 
 struct AtrousOptions {
-  int passes = 3;  ///< [1, 6]; pass i reaches radius * 2^i pixels
-  int radius = 2;  ///< 2: the 5 x 5 spline; 1: 3 x 3 binomial weights, a third of the cost
+  int passes = 4;  ///< [1, 6]; pass i reaches 2^i pixels
   /// (0, 100] standard deviations of luminance that still count as the same light; +inf: light does
   /// not count, only geometry.
-  float luminance_sigmas = 3.0f;
+  float luminance_sigmas = 7.0f;
   /// Where an earlier picture is given, how far its luminance at a neighbor may be off that at the
   /// pixel: (0, 100] standard deviations of this picture, plus a share in [0, 1] of it.
   float earlier_sigmas = 1.5f, earlier_share = 0.1f;
@@ -33,8 +30,8 @@ struct AtrousOptions {
 };
 
 /// Dammertz et al. 2010 with the variance steering of Schied et al. 2017 (SVGF, section 4.4):
-///   out(p) = sum_q h(q) w(p, q) c(q) / sum_q h(q) w(p, q),  h the 5 x 5 B3-spline (or 3 x 3
-///   binomial) with holes,
+///   out(p) = sum_q h(q) w(p, q) c(q) / sum_q h(q) w(p, q),  q = p + 2^pass (-1 .. 1, -1 .. 1),
+///   h 3 x 3 binomial weights instead of their 5 x 5 spline: a third of the cost,
 ///   w = max(0, N_p . N_q)^64 * e(|N_p . (X_q - X_p)| / (plane_distance * depth_p))
 ///                            * e(|l_q - l_p| / (luminance_sigmas * sigma_p + 1e-4 |l_p|)
 ///                              + |g_q - g_p| / (earlier_sigmas * sigma_p + earlier_share |g_p|))
@@ -57,9 +54,9 @@ class Atrous {
   Atrous(Extent extent, const AtrousOptions& options);
 
   /// The tiles of stage_tiles() that are not quiet, 1 each; they are kept for filter_noisy().
-  [[nodiscard]] std::span<const std::uint8_t> find_noisy(const FrameInput& guides, float quiet,
-                                                         const Planes<3>& color,
-                                                         const Plane<float>& variance);
+  [[nodiscard]] const PerTile<std::uint8_t>& find_noisy(const FrameInput& guides, float quiet,
+                                                        const Planes<3>& color,
+                                                        const Plane<float>& variance);
   /// Filters the tiles that find_noisy() found. `planes` are those of `guides`: several images of
   /// one frame share them. Returns the number of surface pixels that the first pass skips.
   /// `earlier`: g, or null.
@@ -73,7 +70,7 @@ class Atrous {
 
   /// The same, without an earlier picture, for the tiles of stage_tiles() with wanted(tile index)
   /// != 0; the others are copied.
-  void process(const FrameInput& guides, std::span<const std::uint8_t> wanted, Planes<3>& color,
+  void process(const FrameInput& guides, const PerTile<std::uint8_t>& wanted, Planes<3>& color,
                Plane<float>& variance);
 
   /// Pixels whose first pass calculated no weights of geometry.
@@ -82,11 +79,11 @@ class Atrous {
  private:
   void check(const FrameInput& guides, const Planes<3>& color, const Plane<float>& variance,
              const Plane<float>* earlier) const;
-  void find_planes(const FrameInput& guides, std::span<const std::uint8_t> wanted);
+  void find_planes(const FrameInput& guides, const PerTile<std::uint8_t>& wanted);
   struct Pass {
     const FrameInput& guides;
     const PlanarBlocks& planes;
-    std::span<const std::uint8_t> wanted;  // tiles; the others are copied
+    const PerTile<std::uint8_t>& wanted;  // tiles; the others are copied
     const Plane<float>* earlier;
   };
   void run_pass(const Pass& in, int pass, Planes<3>& color, Plane<float>& variance);
@@ -96,8 +93,8 @@ class Atrous {
   PlanarBlocks planar_;
   Planes<3> scratch_color_;
   Plane<float> scratch_variance_;
-  std::vector<std::uint8_t> noisy_;    // tiles that are not quiet
-  std::vector<std::int64_t> skipped_;  // surface pixels per tile
+  PerTile<std::uint8_t> noisy_;    // tiles that are not quiet
+  PerTile<std::int64_t> skipped_;  // surface pixels
 };
 
 }  // namespace eigenlight

@@ -47,11 +47,9 @@ void GuidedOptions::validate() const {
 }
 
 GuidedFilter::GuidedFilter(Extent extent, const GuidedOptions& options)
-    : options_(options),
-      grid_(extent, kGuidedTile, kGuidedTile),
-      wanted_(static_cast<std::size_t>(grid_.count())) {
+    : options_(options), grid_(extent, kGuidedTile, kGuidedTile), wanted_(grid_) {
   options.validate();
-  runs_.reserve(wanted_.size());
+  runs_.reserve(static_cast<std::size_t>(grid_.count()));
 }
 
 GuidedFilter::~GuidedFilter() = default;
@@ -83,9 +81,7 @@ std::int64_t GuidedFilter::process(const GuidedInputs& in, Planes<3>& out) {
 // Tiles side by side and one above the other are filtered in one go as far as they form a
 // rectangle within a strip: each saves the other a halo.
 void GuidedFilter::plan_runs(const Plane<std::uint8_t>& wanted) {
-  for_each_tile(grid_, [&](const Tile& tile) {
-    wanted_[static_cast<std::size_t>(tile.index)] = any_wanted(wanted, tile) ? 1 : 0;
-  });
+  for_each_tile(grid_, [&](const Tile& tile) { wanted_[tile] = any_wanted(wanted, tile) ? 1 : 0; });
   runs_.clear();
   const int strip = guided_strip(options_.radius) / kGuidedTile;
   for (int left = 0; left < grid_.columns(); left += strip) {
@@ -93,9 +89,9 @@ void GuidedFilter::plan_runs(const Plane<std::uint8_t>& wanted) {
     const int right = std::min(left + strip, grid_.columns());
     for (int row = 0; row < grid_.rows(); ++row) {
       for (int column = left; column < right; ++column) {
-        if (wanted_[static_cast<std::size_t>(row * grid_.columns() + column)] == 0) continue;
+        if (wanted_[row * grid_.columns() + column] == 0) continue;
         Tile run = grid_.tile(row * grid_.columns() + column);
-        while (column + 1 < right && wanted_[static_cast<std::size_t>(run.index) + 1] != 0) {
+        while (column + 1 < right && wanted_[run.index + 1] != 0) {
           run.x1 = grid_.tile(++run.index).x1;
           ++column;
         }

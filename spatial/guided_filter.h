@@ -75,8 +75,8 @@ class GuidedFilter {
 
   GuidedOptions options_;
   TileGrid grid_;
-  std::vector<std::uint8_t> wanted_;  // per tile
-  std::vector<Tile> runs_;            // of tiles that are filtered in one go
+  PerTile<std::uint8_t> wanted_;
+  std::vector<Tile> runs_;  // of tiles that are filtered in one go
   std::mutex mutex_;
   std::vector<std::unique_ptr<GuidedScratch>> spare_;  // one for each thread that has been here
 };

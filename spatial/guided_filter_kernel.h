@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <vector>
 
 #include "spatial/guided_filter.h"
@@ -50,9 +49,9 @@ struct GuidedWindow {
   GuidedWindow(int base, int span, const GuidedRing& ring, int first);
 
   int span;
-  std::array<std::size_t, 2 * kGuidedRadius + kGuidedBlock> at{};    ///< of row base - span + i
-  std::array<std::size_t, 2 * kGuidedRadius / kGuidedBlock> sums{};  ///< within the common rows
-  std::array<std::size_t, kGuidedBlock> rest{};                      ///< common rows besides
+  std::size_t at[2 * kGuidedRadius + kGuidedBlock] = {};    ///< of row base - span + i
+  std::size_t sums[2 * kGuidedRadius / kGuidedBlock] = {};  ///< within the common rows
+  std::size_t rest[kGuidedBlock] = {};                      ///< common rows besides
   int sum_count = 0, rest_count = 0;
 };
 

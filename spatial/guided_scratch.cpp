@@ -5,16 +5,16 @@ namespace eigenlight {
 GuidedWindow::GuidedWindow(int base, int span_, const GuidedRing& ring, int first) : span(span_) {
   const auto slot = [&](int y) { return static_cast<std::size_t>(ring_slot(y, ring.slots)); };
   for (int i = 0; i < span + kGuidedBlock; ++i) {
-    at[static_cast<std::size_t>(i)] = ring.row * slot(base - span + i);
+    at[i] = ring.row * slot(base - span + i);
   }
   for (int y = base - span + kGuidedBlock; y < base;) {
     if (ring_slot(y, kGuidedBlock) != 0 || y + kGuidedBlock > base) {
-      rest[static_cast<std::size_t>(rest_count++)] = ring.row * slot(y);
+      rest[rest_count++] = ring.row * slot(y);
       ++y;
       continue;
     }
     if (y >= first) {
-      sums[static_cast<std::size_t>(sum_count++)] = ring.sum * (slot(y) / kGuidedBlock);
+      sums[sum_count++] = ring.sum * (slot(y) / kGuidedBlock);
     }
     y += kGuidedBlock;
   }

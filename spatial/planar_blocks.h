@@ -2,8 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
-#include <vector>
 
 #include "frame/frame.h"
 #include "frame/tiles.h"
@@ -28,15 +26,14 @@ class PlanarBlocks {
 
   /// Looks at the tiles of stage_tiles() with chosen(tile index) != 0; blocks of others are not
   /// planar. Throws std::invalid_argument if extents or the number of tiles differ.
-  void find(const FrameInput& guides, std::span<const std::uint8_t> chosen);
+  void find(const FrameInput& guides, const PerTile<std::uint8_t>& chosen);
   /// No block is planar.
   void clear();
 
   /// For each block of a row of blocks how many blocks around it, in all directions and as far as
   /// the image goes, lie in its plane: 0 to kMostMargin.
   [[nodiscard]] const std::uint8_t* margins(int row) const {
-    return margins_.data() +
-           static_cast<std::size_t>(row) * static_cast<std::size_t>(grid_.columns());
+    return &margins_[row * grid_.columns()];
   }
   /// Pixels in blocks with a margin of at least 1.
   [[nodiscard]] std::int64_t pixels() const;
@@ -57,8 +54,8 @@ class PlanarBlocks {
   TileGrid grid_;   // of blocks
   TileGrid tiles_;  // of stage_tiles()
   float tolerance_;
-  std::vector<Block> blocks_;
-  std::vector<std::uint8_t> near_, margins_;  // near: 1 where all neighbors lie in the plane
+  PerTile<Block> blocks_;
+  PerTile<std::uint8_t> near_, margins_;  // near: 1 where all neighbors lie in the plane
 };
 
 }  // namespace eigenlight

@@ -1,23 +1,16 @@
 #include <algorithm>
-#include <cmath>
 
-#include "frame/float_traps.h"
-#include "frame/usable_surface.h"
 #include "spatial/planar_blocks_kernel.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "spatial/planar_blocks_simd.cpp"
 #include <hwy/foreach_target.h>
-#include <hwy/highway.h>
+
+#include "frame/simd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace eigenlight::HWY_NAMESPACE {
 namespace {
-
-namespace hn = hwy::HWY_NAMESPACE;
-// No wider than a block.
-using F = hn::CappedTag<float, PlanarBlocks::kSide>;
-using VF = hn::Vec<F>;
 
 // The plane of pixel (x, y).
 PlanarBlocks::Block PlaneOf(const FrameInput& guides, int x, int y) {
@@ -34,42 +27,40 @@ PlanarBlocks::Block PlaneOf(const FrameInput& guides, int x, int y) {
   return block;
 }
 
-// Whether all pixels of `area` lie in the plane. Products and sums are rounded one by one, so that
-// every instruction set comes to the same answer.
+// Where a vector of pixels lies in the plane of a block. `along`: N . ray. Products and sums are
+// rounded one by one, so that every instruction set comes to the same answer.
+MF8 LiesInPlane(const FrameInput& guides, const PlanarBlocks::Block& block, VF8 along,
+                VF8 tolerance, int x, int y) {
+  const F8 d;
+  const GBuffer& surface = guides.surface;
+  const VF8 off = Abs(Sub(Mul(Load(surface.depth, x, y, d), along), Set(d, block.distance)));
+  VF8 cosine = Zero(d);
+  for (int c = 0; c < 3; ++c) {
+    cosine = Add(cosine, Mul(Set(d, block.normal[c]), Load(surface.normal[c], x, y, d)));
+  }
+  const VF8 turn = Abs(Sub(cosine, Set(d, 1.0f)));
+  return And(HasSurface(surface.id, x, y, d),
+             And(Le(off, tolerance), Le(turn, Set(d, kPlanarTurn))));
+}
+
+// Whether all pixels of `area` lie in the plane of the block.
 bool HoldsAll(const FrameInput& guides, float tolerance, const Rect& area,
               const PlanarBlocks::Block& block) {
-  const F d;
-  const hn::RebindToUnsigned<F> du;
+  const F8 d;
   const Camera& camera = guides.camera;
   const glm::vec3 view = camera.world_to_view * block.normal;
   const float plane_x = view.x / camera.focal, plane_y = view.y / camera.focal;
-  const VF most = hn::Set(d, tolerance * block.depth);
-  auto good = hn::FirstN(d, hn::Lanes(d));
+  const VF8 most = Set(d, tolerance * block.depth);
+  MF8 good = FirstLanes(LaneCount(d), d);
   for (int y = area.y0; y < area.y1; ++y) {
-    const auto load = [&](const Plane<float>& plane, int x) {
-      return hn::LoadU(d, plane.row(y) + x);
-    };
     // N . ray(x, y) = plane_x x + row
     const float row = view.z + plane_y * (static_cast<float>(y) + 0.5f - camera.center.y) +
                       plane_x * (0.5f - camera.center.x);
-    for (int x = area.x0; x < area.x1; x += static_cast<int>(hn::Lanes(d))) {
-      const VF along = hn::Add(hn::Mul(hn::Set(d, plane_x), hn::Iota(d, static_cast<float>(x))),
-                               hn::Set(d, row));
-      const VF off = hn::Abs(
-          hn::Sub(hn::Mul(load(guides.surface.depth, x), along), hn::Set(d, block.distance)));
-      VF cosine = hn::Zero(d);
-      for (std::size_t c = 0; c < 3; ++c) {
-        const VF own = hn::Set(d, block.normal[static_cast<int>(c)]);
-        cosine = hn::Add(cosine, hn::Mul(own, load(guides.surface.normal[c], x)));
-      }
-      const VF turn = hn::Abs(hn::Sub(cosine, hn::Set(d, 1.0f)));
-      const auto id = hn::LoadU(du, guides.surface.id.row(y) + x);
-      const auto here = hn::And(hn::And(hn::Le(off, most), hn::Le(turn, hn::Set(d, kPlanarTurn))),
-                                hn::RebindMask(d, hn::Ne(id, hn::Zero(du))));
-      // Lanes beyond the image hold nothing.
-      const auto beyond =
-          hn::Ge(hn::Iota(d, static_cast<float>(x)), hn::Set(d, static_cast<float>(area.x1)));
-      good = hn::And(good, hn::Or(here, beyond));
+    for (int x = area.x0; x < area.x1; x += LaneCount(d)) {
+      const VF8 column = Iota(d, static_cast<float>(x));
+      const VF8 along = Add(Mul(Set(d, plane_x), column), Set(d, row));
+      const MF8 beyond = Not(FirstLanes(area.x1 - x, d));
+      good = And(good, Or(LiesInPlane(guides, block, along, most, x, y), beyond));
     }
     if (!hn::AllTrue(d, good)) return false;
   }

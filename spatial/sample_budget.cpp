@@ -19,9 +19,7 @@ void BudgetOptions::validate() const {
 }
 
 SampleBudget::SampleBudget(Extent extent, const BudgetOptions& options)
-    : options_(options),
-      grid_(extent, extent.width, kRows),
-      histograms_(static_cast<std::size_t>(grid_.count())) {
+    : options_(options), grid_(extent, extent.width, kRows), histograms_(grid_) {
   options.validate();
 }
 
@@ -50,7 +48,7 @@ BudgetStats SampleBudget::process(const FrameInput& frame, const Plane<float>& a
            "sample budget made for {}x{}: got planes of another size", grid_.extent().width,
            grid_.extent().height);
   for_each_tile(grid_, [&](const Tile& rows) {
-    AgeHistogram& histogram = histograms_[static_cast<std::size_t>(rows.index)];
+    AgeHistogram& histogram = histograms_[rows];
     histogram.fill(0);
     for (int y = rows.y0; y < rows.y1; ++y) {
       count_ages(frame.surface.id.row(y), age.row(y), rows.x1, frame.spp, highest(frame.spp),

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include "frame/frame.h"
 #include "frame/tiles.h"
@@ -46,7 +45,7 @@ class SampleBudget {
 
   BudgetOptions options_;
   TileGrid grid_;
-  std::vector<AgeHistogram> histograms_;  // per strip of rows
+  PerTile<AgeHistogram> histograms_;  // of strips of rows
 };
 
 }  // namespace eigenlight

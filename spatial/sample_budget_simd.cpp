@@ -3,51 +3,43 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "spatial/sample_budget_simd.cpp"
 #include <hwy/foreach_target.h>
-#include <hwy/highway.h>
+
+#include "frame/simd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace eigenlight::HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
-using F = hn::ScalableTag<float>;
-using I = hn::RebindToSigned<F>;
-using U = hn::RebindToUnsigned<F>;
-
 // Age in whole samples, to the nearest: most ages are whole numbers but for the rounding of their
 // warp, and must not lose a sample to it.
-hn::Vec<I> AgeSamples(const float* age, int spp) {
-  const F d;
-  const auto n = hn::LoadU(d, age);
+VI AgeSamples(const float* age, int spp) {
+  const VF n = LoadU(F(), age);
   // Not fused, so that every instruction set rounds alike.
-  const auto product =
-      hn::Mul(hn::IfThenElseZero(hn::Gt(n, hn::Zero(d)), n), hn::Set(d, static_cast<float>(spp)));
-  const auto samples = hn::Add(product, hn::Set(d, 0.5f));
-  return hn::ConvertTo(I(), hn::Min(samples, hn::Set(d, static_cast<float>(kBudgetBins - 1))));
+  const VF product = Mul(IfThenElseZero(Gt(n, Zero()), n), Set(spp));
+  return ConvertTo(I(), Min(Add(product, Set(0.5f)), Set(kBudgetBins - 1)));
 }
 
 // The first `count` lanes that show a surface.
 hn::Mask<I> Shown(const std::uint32_t* id, int count) {
   const I d;
   const U du;
-  const auto shown = hn::RebindMask(d, hn::Ne(hn::LoadU(du, id), hn::Zero(du)));
-  return hn::And(hn::FirstN(d, static_cast<std::size_t>(count)), shown);
+  return And(FirstLanes(count, d), RebindMask(d, Ne(LoadU(du, id), Zero(du))));
 }
 
 void CountAges(const std::uint32_t* id, const float* age, int count, int spp, int oldest,
                AgeHistogram& pixels) {
   const I d;
-  const int lanes = static_cast<int>(hn::Lanes(d));
   alignas(64) std::int32_t bins[HWY_MAX_BYTES / sizeof(std::int32_t)];
-  for (int i = 0; i < count; i += lanes) {
+  for (int i = 0; i < count; i += LaneCount(d)) {
     const auto shown = Shown(id + i, count - i);
-    const auto samples = hn::Min(AgeSamples(age + i, spp), hn::Set(d, oldest));
-    const auto old = hn::And(shown, hn::Eq(samples, hn::Set(d, oldest)));
-    pixels[static_cast<std::size_t>(oldest)] += static_cast<std::int64_t>(hn::CountTrue(d, old));
+    const VI samples = Min(AgeSamples(age + i, spp), Set(d, oldest));
+    const auto old = And(shown, Eq(samples, Set(d, oldest)));
+    pixels[static_cast<std::size_t>(oldest)] += CountLanes(old, d);
     // Most pixels are old, so that few vectors have others to be counted one by one.
-    if (hn::AllFalse(d, hn::AndNot(old, shown))) continue;
-    hn::Store(hn::IfThenElse(hn::AndNot(old, shown), samples, hn::Set(d, -1)), d, bins);
-    for (int lane = 0; lane < lanes; ++lane) {
+    const auto younger = AndNot(old, shown);
+    if (AllFalse(d, younger)) continue;
+    Store(IfThenElse(younger, samples, Set(d, -1)), d, bins);
+    for (int lane = 0; lane < LaneCount(d); ++lane) {
       if (bins[lane] >= 0) ++pixels[static_cast<std::size_t>(bins[lane])];
     }
   }
@@ -57,12 +49,11 @@ void FillUp(const std::uint32_t* id, const float* age, int count, int spp, int l
             std::uint8_t* extra) {
   const I d;
   const hn::Rebind<std::uint8_t, I> bytes;
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  for (int i = 0; i < count; i += lanes) {
-    const auto missing = hn::Sub(hn::Set(d, level), AgeSamples(age + i, spp));
-    const auto granted = hn::Min(hn::Max(missing, hn::Zero(d)), hn::Set(d, most));
-    const auto shown = Shown(id + i, count - i);
-    hn::StoreU(hn::DemoteTo(bytes, hn::IfThenElseZero(shown, granted)), bytes, extra + i);
+  for (int i = 0; i < count; i += LaneCount(d)) {
+    const VI missing = Sub(Set(d, level), AgeSamples(age + i, spp));
+    const VI granted = Min(Max(missing, Zero(d)), Set(d, most));
+    const VI shown = IfThenElseZero(Shown(id + i, count - i), granted);
+    StoreU(hn::DemoteTo(bytes, shown), bytes, extra + i);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "frame/luminance.h"
 #include "spatial/rivals/atrous_filter_kernel.h"
 
 namespace eigenlight {
@@ -30,7 +31,7 @@ AtrousFilter::AtrousFilter(Extent extent, const AtrousFilterOptions& options)
       grid_(stage_tiles(extent)),
       planes_(extent, 2 << (options.passes - 1)),
       next_(planes_.make_light()),
-      sums_(static_cast<std::size_t>(grid_.count())) {}
+      sums_(grid_) {}
 
 void AtrousFilter::process(const SpatialInputs& in, Planes<3>& out) {
   check_spatial(in, out, grid_.extent(), "a-trous filter");
@@ -51,7 +52,7 @@ void AtrousFilter::process(const SpatialInputs& in, Planes<3>& out) {
   }
   for_each_tile(grid_, [&](const Tile& tile) {
     for (int y = tile.y0; y < tile.y1; ++y) {
-      for (std::size_t c = 0; c < 3; ++c) {
+      for (int c = 0; c < 3; ++c) {
         const float* from = planes_.row(planes_.light.color[c], y);
         std::copy(from + tile.x0, from + tile.x1, out[c].at(tile.x0, y));
       }
@@ -62,13 +63,13 @@ void AtrousFilter::process(const SpatialInputs& in, Planes<3>& out) {
 float AtrousFilter::mean_luminance() {
   const TapLight& light = planes_.light;
   for_each_tile(grid_, [&](const Tile& tile) {
-    Sum& sum = sums_[static_cast<std::size_t>(tile.index)];
+    Sum& sum = sums_[tile];
     sum = {};
     for (int y = tile.y0; y < tile.y1; ++y) {
-      const auto row = [&](std::size_t c) { return planes_.row(light.color[c], y); };
+      const auto row = [&](int c) { return planes_.row(light.color[c], y); };
       const float *r = row(0), *g = row(1), *b = row(2), *w = planes_.row(light.weight, y);
       for (int x = tile.x0; x < tile.x1; ++x) {
-        sum.luminance += static_cast<double>(0.2126f * r[x] + 0.7152f * g[x] + 0.0722f * b[x]);
+        sum.luminance += static_cast<double>(luminance(r[x], g[x], b[x]));
         sum.pixels += w[x] > 0.0f ? 1.0 : 0.0;
       }
     }

@@ -1,8 +1,6 @@
 // Edge-avoiding a-trous wavelets as published.
 #pragma once
 
-#include <vector>
-
 #include "spatial/rivals/spatial_filter.h"
 #include "spatial/rivals/tap_planes.h"
 
@@ -51,7 +49,7 @@ class AtrousFilter final : public SpatialFilter {
   struct Sum {
     double luminance = 0.0, pixels = 0.0;
   };
-  std::vector<Sum> sums_;  // per tile
+  PerTile<Sum> sums_;
 };
 
 }  // namespace eigenlight

@@ -1,102 +1,96 @@
 #include <algorithm>
 
-#include "frame/float_traps.h"
 #include "spatial/rivals/pyramid_block.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "spatial/rivals/pyramid_load_simd.cpp"
 #include <hwy/foreach_target.h>
-#include <hwy/highway.h>
+
+#include "frame/simd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace eigenlight::HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
-using F = hn::CappedTag<float, 16>;
-using VF = hn::Vec<F>;
-using MF = hn::Mask<F>;
-
 // As in pyramid.h: sums of 18 such values, whose weights are at most 1, stay finite.
 constexpr float kLargestValue = 1e36f;
 
-// Two visits to a row of the image: all nine planes at once are one more than the eight lines that
-// the first-level cache has for addresses a page apart, as those of planes are.
-
-// A vector of the surface; normal and depth are 0 where there is none.
-void LoadSurface(const GBuffer& surface, int x, int y, MF inside, float* (&to)[kPyramidChannels]) {
-  const F d;
-  const hn::RebindToUnsigned<F> du;
-  const auto id = hn::MaskedLoad(hn::RebindMask(du, inside), du, surface.id.row(y) + x);
-  const VF depth = hn::MaskedLoad(inside, d, surface.depth.row(y) + x);
-  MF exists = hn::And(hn::RebindMask(d, hn::Ne(id, hn::Zero(du))),
-                      hn::And(hn::Gt(depth, hn::Zero(d)), hn::IsFinite(depth)));
-  VF normal[3];
-  for (std::size_t c = 0; c < 3; ++c) {
-    normal[c] = hn::MaskedLoad(inside, d, surface.normal[c].row(y) + x);
-    exists = hn::And(exists, hn::IsFinite(normal[c]));
-  }
-  for (std::size_t c = 0; c < 3; ++c) {
-    hn::StoreU(hn::IfThenElseZero(exists, normal[c]), d, to[kNormal + c]);
-  }
-  hn::StoreU(hn::IfThenElseZero(exists, depth), d, to[kDepth]);
+// A vector of pixels, 0 outside the columns of the block.
+VF16 LoadInside(MF16 inside, const Plane<float>& plane, int x, int y) {
+  return IfThenElseZero(inside, Load(plane, x, y, F16()));
 }
 
-// Light where a surface has been loaded; no sample, no light.
-void LoadSignal(const PyramidImage& image, int x, int y, MF inside,
-                float* (&to)[kPyramidChannels]) {
-  const F d;
-  const VF most = hn::Set(d, kLargestValue);
-  const VF weight = hn::MaskedLoad(inside, d, image.weight.row(y) + x);
-  MF used = hn::And(hn::Gt(hn::LoadU(d, to[kDepth]), hn::Zero(d)),
-                    hn::And(hn::Gt(weight, hn::Zero(d)), hn::Lt(weight, most)));
-  VF value[3];
-  for (std::size_t c = 0; c < 3; ++c) {
-    value[c] = hn::Mul(weight, hn::MaskedLoad(inside, d, image.signal[c].row(y) + x));
-    used = hn::And(used, hn::Lt(hn::Abs(value[c]), most));
+// A row of the image is read in two visits, surface and signal: all nine planes at once are one
+// more than the eight lines that a first-level cache has for addresses a page apart, as those of
+// planes are.
+
+// Normal and depth are 0 where there is no surface.
+void LoadSurface(const GBuffer& surface, int x, int y, MF16 inside,
+                 float* (&to)[kPyramidChannels]) {
+  const F16 d;
+  const VF16 depth = LoadInside(inside, surface.depth, x, y);
+  MF16 exists =
+      And(And(inside, HasSurface(surface.id, x, y, d)), And(Gt(depth, Zero(d)), IsFinite(depth)));
+  Vec3<VF16> normal;
+  for (int c = 0; c < 3; ++c) {
+    normal[c] = LoadInside(inside, surface.normal[c], x, y);
+    exists = And(exists, IsFinite(normal[c]));
   }
-  for (std::size_t c = 0; c < 3; ++c) {
-    hn::StoreU(hn::IfThenElseZero(used, value[c]), d, to[kRed + c]);
-  }
-  hn::StoreU(hn::IfThenElseZero(used, weight), d, to[kWeight]);
+  for (int c = 0; c < 3; ++c) StoreU(IfThenElseZero(exists, normal[c]), d, to[kNormal + c]);
+  StoreU(IfThenElseZero(exists, depth), d, to[kDepth]);
 }
 
-void LoadPlanes(const PyramidPlanes& planes, int x, int y, MF inside,
+// Signal times weight where LoadSurface() found a surface; both 0 without a usable sample.
+void LoadSignal(const PyramidImage& image, int x, int y, MF16 inside,
                 float* (&to)[kPyramidChannels]) {
-  const F d;
+  const F16 d;
+  const VF16 most = Set(d, kLargestValue);
+  const VF16 weight = LoadInside(inside, image.weight, x, y);
+  MF16 used = And(Gt(LoadU(d, to[kDepth]), Zero(d)), And(Gt(weight, Zero(d)), Lt(weight, most)));
+  Vec3<VF16> value;
+  for (int c = 0; c < 3; ++c) {
+    value[c] = Mul(weight, LoadInside(inside, image.signal[c], x, y));
+    used = And(used, Lt(Abs(value[c]), most));
+  }
+  for (int c = 0; c < 3; ++c) StoreU(IfThenElseZero(used, value[c]), d, to[kRed + c]);
+  StoreU(IfThenElseZero(used, weight), d, to[kWeight]);
+}
+
+void LoadPlanes(const PyramidPlanes& planes, int x, int y, MF16 inside,
+                float* (&to)[kPyramidChannels]) {
   const auto copy = [&](const Plane<float>& plane, float* target) {
-    hn::StoreU(hn::MaskedLoad(inside, d, plane.row(y) + x), d, target);
+    StoreU(LoadInside(inside, plane, x, y), F16(), target);
   };
-  for (std::size_t c = 0; c < 4; ++c) copy(planes.values[c], to[kRed + c]);
-  for (std::size_t c = 0; c < 3; ++c) copy(planes.normal[c], to[kNormal + c]);
+  for (int c = 0; c < 4; ++c) copy(planes.values[c], to[kRed + c]);
+  for (int c = 0; c < 3; ++c) copy(planes.normal[c], to[kNormal + c]);
   copy(planes.depth, to[kDepth]);
 }
 
 // Pixels [x0, x1) of row y, in whole vectors.
 void LoadRow(const PyramidView& view, int x0, int x1, int y, float* (&row)[kPyramidChannels]) {
-  const F d;
-  const int lanes = static_cast<int>(hn::Lanes(d));
+  const F16 d;
+  const int lanes = LaneCount(d);
   const auto run = [&](const auto& load) {
     float* to[kPyramidChannels];
     std::copy(std::begin(row), std::end(row), to);
     for (int x = x0; x < x1; x += lanes) {
-      load(x, hn::FirstN(d, static_cast<std::size_t>(std::min(lanes, x1 - x))), to);
+      load(x, FirstLanes(std::min(lanes, x1 - x), d), to);
       for (float*& channel : to) channel += lanes;
     }
   };
   if (view.planes) {
-    run([&](int x, MF inside, auto& to) { LoadPlanes(*view.planes, x, y, inside, to); });
+    run([&](int x, MF16 inside, auto& to) { LoadPlanes(*view.planes, x, y, inside, to); });
   } else {
-    run([&](int x, MF inside, auto& to) { LoadSurface(view.image.surface, x, y, inside, to); });
-    run([&](int x, MF inside, auto& to) { LoadSignal(view.image, x, y, inside, to); });
+    run([&](int x, MF16 inside, auto& to) { LoadSurface(view.image.surface, x, y, inside, to); });
+    run([&](int x, MF16 inside, auto& to) { LoadSignal(view.image, x, y, inside, to); });
   }
 }
 
 void LoadBlock(const PyramidView& view, int x0, int y0, int border, PyramidFineBlock& block) {
-  const int lanes = static_cast<int>(hn::Lanes(F()));
+  const int lanes = LaneCount(F16());
   const Extent extent = view.extent();
   const int end = x0 + kPyramidTileWidth + border;
-  // Whole vectors, so that loads are aligned.
+  // Whole vectors on the left, where the border needs but one pixel: loads of planes stay aligned.
   const int first = std::max(x0 - border * lanes, 0), last = std::min(end, extent.width);
   for (int r = 1 - border; r < kPyramidTileHeight + 1 + border; ++r) {
     float* row[kPyramidChannels];
@@ -114,11 +108,11 @@ void LoadBlock(const PyramidView& view, int x0, int y0, int border, PyramidFineB
 
 // Every value twice.
 void SpreadRow(const float* from, int count, float* to) {
-  const F d;
-  const int lanes = static_cast<int>(hn::Lanes(d));
+  const F16 d;
+  const int lanes = LaneCount(d);
   int i = 0;
   for (; i + lanes <= count; i += lanes) {
-    const VF v = hn::LoadU(d, from + i);
+    const VF16 v = LoadU(d, from + i);
     hn::StoreInterleaved2(v, v, d, to + 2 * i);
   }
   for (; i < count; ++i) to[2 * i] = to[2 * i + 1] = from[i];
@@ -138,8 +132,8 @@ void LoadCoarse(const PyramidPlanes& planes, const Rect& tile, PyramidCoarseBloc
     std::fill(to + 2 * (last - x0), to + 2 * (end - x0), 0.0f);
   };
   for (int r = 0; r < kPyramidTileHeight / 2 + 2; ++r) {
-    for (int c = 0; c < 4; ++c) spread(planes.result[static_cast<std::size_t>(c)], kRed + c, r);
-    for (int c = 0; c < 3; ++c) spread(planes.normal[static_cast<std::size_t>(c)], kNormal + c, r);
+    for (int c = 0; c < 4; ++c) spread(planes.result[c], kRed + c, r);
+    for (int c = 0; c < 3; ++c) spread(planes.normal[c], kNormal + c, r);
     spread(planes.depth, kDepth, r);
   }
 }

@@ -74,11 +74,10 @@ void TapPlanes::load_pixel(const SpatialInputs& in, int x, int y) {
   surface(i, y) = shown ? 1.0f : 0.0f;
   light.weight(i, y) = used ? w : 0.0f;
   for (int c = 0; c < 3; ++c) {
-    const auto plane = static_cast<std::size_t>(c);
-    normal[plane](i, y) = shown ? n[c] : 0.0f;
-    albedo[plane](i, y) = shown ? a[c] : 0.0f;
-    position[plane](i, y) = at[c];
-    light.color[plane](i, y) = used ? s[c] : 0.0f;
+    normal[c](i, y) = shown ? n[c] : 0.0f;
+    albedo[c](i, y) = shown ? a[c] : 0.0f;
+    position[c](i, y) = at[c];
+    light.color[c](i, y) = used ? s[c] : 0.0f;
   }
 }
 

@@ -12,18 +12,18 @@
 namespace eigenlight {
 namespace {
 
-bool has_taps(const TapSegment& taps, std::size_t i) {
+bool has_taps(const TapSegment& taps, int i) {
   return taps.weight[0][i] + taps.weight[1][i] + taps.weight[2][i] + taps.weight[3][i] > 0.0f;
 }
 
 void drop_empty_taps(const BasisField& from, int count, TapSegment& taps) {
-  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+  for (int i = 0; i < count; ++i) {
     float sum = 0.0f;
     bool dropped = false;
-    for (std::size_t t = 0; t < 4; ++t) {
+    for (int t = 0; t < 4; ++t) {
       float& weight = taps.weight[t][i];
       if (!(weight > 0.0f)) continue;
-      const glm::ivec2 tap = taps.tap(static_cast<int>(t), i);
+      const glm::ivec2 tap = taps.tap(t, i);
       const bool empty = !(from.age(tap.x, tap.y) > 0.0f);
       dropped = dropped || empty;
       if (empty) weight = 0.0f;
@@ -65,7 +65,7 @@ void BasisHistory::warp_row(const FrameInput& frame, const PreviousSurface& prev
   std::bitset<kSegment> lost;
   for (int i = 0; i < count && options_.widens; ++i) {
     const auto at = static_cast<std::size_t>(i);
-    lost[at] = frame.surface.id(row.x0 + i, row.y0) != 0 && !has_taps(taps, at);
+    lost[at] = frame.surface.id(row.x0 + i, row.y0) != 0 && !has_taps(taps, i);
   }
   if (options_.drops_empty_taps) drop_empty_taps(bases_, count, taps);
   warp_bases(bases_, taps, row, warped_);

@@ -31,21 +31,20 @@ Correction::Correction(Extent extent, const CorrectionOptions& options, const Ta
       cells_(extent, taps),
       grid_(stage_tiles(cells_.extent())),
       filter_(cells_.extent(), {.passes = options.passes,
-                                .radius = 1,
                                 .luminance_sigmas = std::numeric_limits<float>::infinity(),
                                 .skip_planar = options.skip_planar}),
       correction_(make_planes<3>(extent)),
       factor_(cells_.extent()),
       block_grid_(extent, kResidualBlock, kResidualBlock),
-      blocks_(static_cast<std::size_t>(block_grid_.count())),
-      tile_blocks_(static_cast<std::size_t>(gate_.grid().count())),
-      open_(tile_blocks_.size()),
-      was_open_(tile_blocks_.size()),
-      change_(tile_blocks_.size()),
-      wanted_(static_cast<std::size_t>(grid_.count())),
-      loaded_(wanted_.size()),
-      was_loaded_(wanted_.size()),
-      corrected_(wanted_.size()) {
+      blocks_(block_grid_),
+      tile_blocks_(gate_.grid()),
+      open_(gate_.grid()),
+      was_open_(gate_.grid()),
+      change_(gate_.grid()),
+      wanted_(grid_),
+      loaded_(grid_),
+      was_loaded_(grid_),
+      corrected_(grid_) {
   options.validate();
 }
 
@@ -58,9 +57,7 @@ void Correction::count_blocks(const CorrectionInputs& in, const Rect& area) {
     const Rect row{area.x0, y, area.x1, std::min(y + kResidualBlock, area.y1)};
     const int first = y / kResidualBlock * block_grid_.columns() + area.x0 / kResidualBlock;
     const int blocks = (area.x1 - area.x0 + kResidualBlock - 1) / kResidualBlock;
-    test_blocks(in, row,
-                std::span(blocks_).subspan(static_cast<std::size_t>(first),
-                                           static_cast<std::size_t>(blocks)));
+    test_blocks(in, row, std::span(&blocks_[first], static_cast<std::size_t>(blocks)));
   }
   for_needed_cells(area, [&](const Tile& cells) { load_cells(in, cells, cells_); });
 }
@@ -75,7 +72,7 @@ void Correction::for_needed_cells(const Rect& area, const Body& body) const {
     for (int x0 = area.x0 / 2 / kCellStep * kCellStep, x1 = 0; x0 < right; x0 = x1) {
       x1 = std::min((x0 / width + 1) * width, right);
       const int tile = y0 / height * grid_.columns() + x0 / width;
-      if (loaded_[static_cast<std::size_t>(tile)] != 0) body(Tile{{x0, y0, x1, y1}, tile});
+      if (loaded_[tile] != 0) body(Tile{{x0, y0, x1, y1}, tile});
     }
   }
 }
@@ -83,7 +80,7 @@ void Correction::for_needed_cells(const Rect& area, const Body& body) const {
 double Correction::smooth(const CorrectionInputs& in, Plane<float>& innovation) {
   std::swap(open_, was_open_);
   std::swap(loaded_, was_loaded_);
-  std::fill(loaded_.begin(), loaded_.end(), std::uint8_t{0});
+  loaded_.fill(0);
   count_tiles();
   const bool any = open_gates();
   for_each_tile(gate_.grid(), [&](const Tile& tile) { close_tile(tile); });
@@ -91,21 +88,20 @@ double Correction::smooth(const CorrectionInputs& in, Plane<float>& innovation) 
 
   choose_cells();
   cells_.set_camera(in.guides.camera);
-  const auto on = [&](const std::vector<std::uint8_t>& chosen, auto body) {
+  const auto on = [&](const PerTile<std::uint8_t>& chosen, auto body) {
     for_each_tile(grid_, [&](const Tile& cells) {
-      if (chosen[static_cast<std::size_t>(cells.index)] != 0) body(cells);
+      if (chosen[cells] != 0) body(cells);
     });
   };
   // This and the spreading read many planes and need nothing of the rows around: line by line.
   for_each_segment(grid_, [&](const Tile& row) {
-    const auto tile = static_cast<std::size_t>(row.index);
-    if (loaded_[tile] == 0 || was_loaded_[tile] != 0) return;
+    if (loaded_[row] == 0 || was_loaded_[row] != 0) return;
     place_cells(in.guides.surface, row, cells_);
     load_cells(in, row, cells_);
   });
   filter_.process(cells_.guides, wanted_, cells_.mean, cells_.noise);
   on(loaded_, [&](const Tile& cells) { find_factor(cells); });
-  std::fill(corrected_.begin(), corrected_.end(), 0);
+  corrected_.fill(0);
   on(wanted_, [&](const Tile& cells) { weigh_cells(cells); });
   for_each_segment(gate_.grid(), [&](const Tile& row) {
     if (is_open(row.index)) spread_cells(cells_, in.guides, row, {correction_, innovation});
@@ -119,11 +115,11 @@ double Correction::smooth(const CorrectionInputs& in, Plane<float>& innovation) 
 
 void Correction::count_tiles() {
   constexpr int kSide = kCoefficientTile / kResidualBlock;
-  std::fill(tile_blocks_.begin(), tile_blocks_.end(), TileBlocks{});
+  tile_blocks_.fill({});
   for (int i = 0; i < block_grid_.count(); ++i) {
     const int x = i % block_grid_.columns() / kSide, y = i / block_grid_.columns() / kSide;
-    TileBlocks& tile = tile_blocks_[static_cast<std::size_t>(y * gate_.grid().columns() + x)];
-    const ResidualBlock& block = blocks_[static_cast<std::size_t>(i)];
+    TileBlocks& tile = tile_blocks_[y * gate_.grid().columns() + x];
+    const ResidualBlock& block = blocks_[i];
     tile.all += block.is_asked ? 1 : 0;
     tile.significant += block.is_significant ? 1 : 0;
   }
@@ -133,20 +129,20 @@ void Correction::count_tiles() {
 // interpolated.
 bool Correction::open_gates() {
   const TileGrid& grid = gate_.grid();
-  std::fill(open_.begin(), open_.end(), std::uint8_t{0});
+  open_.fill(0);
   for (int index = 0; index < grid.count(); ++index) {
     double all = 0.0, significant = 0.0;
-    for_each_neighbor(grid, index, [&](std::size_t tile) {
+    for_each_neighbor(grid, index, [&](int tile) {
       all += tile_blocks_[tile].all;
       significant += tile_blocks_[tile].significant;
     });
     // One block alone is no region: in a small image chance would open the gate with it.
     const double share = all > 0.0 ? (significant - 1.0) / all : 0.0;
     const double change = std::clamp((share - kGateStart) / kGateRange, 0.0, 1.0);
-    change_[static_cast<std::size_t>(index)] = static_cast<float>(change);
+    change_[index] = static_cast<float>(change);
     const double gate = options_.gated ? change : 1.0;
     gate_.tile(index)[0] = static_cast<float>(gate - 1.0);
-    if (gate > 0.0) for_each_neighbor(grid, index, [&](std::size_t tile) { open_[tile] = 1; });
+    if (gate > 0.0) for_each_neighbor(grid, index, [&](int tile) { open_[tile] = 1; });
   }
   skipped_ = 0;
   for (int index = 0; index < grid.count(); ++index) {
@@ -157,22 +153,22 @@ bool Correction::open_gates() {
 
 // Forgets what an earlier frame lacked.
 void Correction::close_tile(const Tile& tile) {
-  if (is_open(tile.index) || was_open_[static_cast<std::size_t>(tile.index)] == 0) return;
+  if (is_open(tile.index) || was_open_[tile] == 0) return;
   for (auto& plane : correction_) fill_rect(plane, tile, 0.0f);
 }
 
 // Cells are filtered that a pixel of an open tile can reach, and loaded that the filter can reach
 // from there.
 void Correction::choose_cells() {
-  std::fill(wanted_.begin(), wanted_.end(), std::uint8_t{0});
-  const auto mark = [&](std::vector<std::uint8_t>& chosen, const Rect& area, int reach) {
+  wanted_.fill(0);
+  const auto mark = [&](PerTile<std::uint8_t>& chosen, const Rect& area, int reach) {
     const int left = std::max(area.x0 - reach, 0) / grid_.tile_width();
     const int right = (area.x1 + reach - 1) / grid_.tile_width();
     const int top = std::max(area.y0 - reach, 0) / grid_.tile_height();
     const int bottom = (area.y1 + reach - 1) / grid_.tile_height();
     for (int y = top; y <= std::min(bottom, grid_.rows() - 1); ++y) {
       for (int x = left; x <= std::min(right, grid_.columns() - 1); ++x) {
-        chosen[static_cast<std::size_t>(y * grid_.columns() + x)] = 1;
+        chosen[y * grid_.columns() + x] = 1;
       }
     }
   };
@@ -185,7 +181,7 @@ void Correction::choose_cells() {
   // One tap to each side, 1 + 2 + 4 + ... cells apart; one more for the mean of factors.
   const int reach = (1 << options_.passes);
   for (int index = 0; index < grid_.count(); ++index) {
-    if (wanted_[static_cast<std::size_t>(index)] != 0) mark(loaded_, grid_.tile(index), reach);
+    if (wanted_[index] != 0) mark(loaded_, grid_.tile(index), reach);
   }
 }
 
@@ -244,7 +240,7 @@ void Correction::weigh_cells(const Tile& cells) {
       }
     }
   }
-  corrected_[static_cast<std::size_t>(cells.index)] = corrected;
+  corrected_[cells] = corrected;
 }
 
 }  // namespace eigenlight

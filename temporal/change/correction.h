@@ -50,10 +50,10 @@ class Correction {
   /// Zero where the prediction lacks nothing.
   [[nodiscard]] const Planes<3>& correction() const { return correction_; }
   /// Whether the last frame may have corrected anything in a tile of the coefficients' grid.
-  [[nodiscard]] bool is_open(int tile) const { return open_[static_cast<std::size_t>(tile)] != 0; }
+  [[nodiscard]] bool is_open(int tile) const { return open_[tile] != 0; }
   /// g of a tile of the coefficients' grid in the last frame, [0, 1], whether filtering is gated or
   /// not: how surely its light changed in a way no basis knows.
-  [[nodiscard]] float change(int tile) const { return change_[static_cast<std::size_t>(tile)]; }
+  [[nodiscard]] float change(int tile) const { return change_[tile]; }
   /// Pixels of the last frame in tiles that were not open: nothing was filtered there.
   [[nodiscard]] std::int64_t skipped() const { return skipped_; }
 
@@ -83,12 +83,14 @@ class Correction {
   Planes<3> correction_;
   Plane<float> factor_;  // f of each cell
   TileGrid block_grid_;
-  std::vector<ResidualBlock> blocks_;
-  std::vector<TileBlocks> tile_blocks_;                     // per coefficient tile
-  std::vector<std::uint8_t> open_, was_open_;               // per coefficient tile
-  std::vector<float> change_;                               // g per coefficient tile
-  std::vector<std::uint8_t> wanted_, loaded_, was_loaded_;  // per tile of cells
-  std::vector<std::int64_t> corrected_;                     // confirmed pixels per tile of cells
+  PerTile<ResidualBlock> blocks_;
+  // Of coefficient tiles.
+  PerTile<TileBlocks> tile_blocks_;
+  PerTile<std::uint8_t> open_, was_open_;
+  PerTile<float> change_;  // g
+  // Of tiles of cells.
+  PerTile<std::uint8_t> wanted_, loaded_, was_loaded_;
+  PerTile<std::int64_t> corrected_;  // confirmed pixels
   std::int64_t skipped_ = 0;
 };
 

@@ -23,7 +23,7 @@ EigenDenoiser::EigenDenoiser(const DenoiserOptions& options, const EigenOptions&
            options.layers, kMaxLights);
   for (int i = 0; i < options.layers; ++i) layers_.emplace_back(i, options, tuning);
   if (options.layers > 1) lowest_age_ = Plane<float>(options.extent);
-  noisy_.resize(static_cast<std::size_t>(stage_tiles(options.extent).count()));
+  noisy_ = PerTile<std::uint8_t>(stage_tiles(options.extent));
 }
 
 const Planes<3>* EigenDenoiser::step(FrameSource& source) {
@@ -129,9 +129,9 @@ void EigenDenoiser::resample(FrameSource& source, std::int64_t planned) {
 void EigenDenoiser::filter() {
   for (LightLayer& layer : layers_) layer.fill_young(shared_);
   if (!options_.filter) return;
-  std::fill(noisy_.begin(), noisy_.end(), std::uint8_t{0});
+  noisy_.fill(0);
   for (LightLayer& layer : layers_) {
-    const auto noisy = layer.find_noisy(shared_);
+    const auto& noisy = layer.find_noisy(shared_);
     std::transform(noisy.begin(), noisy.end(), noisy_.begin(), noisy_.begin(), std::bit_or<>());
   }
   shared_.find_planes(noisy_);

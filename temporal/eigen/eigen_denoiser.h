@@ -49,8 +49,8 @@ class EigenDenoiser final : public Denoiser {
   std::deque<LightLayer> layers_;
   FrameReport report_;
   bool resampled_ = false;
-  Plane<float> lowest_age_;          // over all layers, where there is more than one
-  std::vector<std::uint8_t> noisy_;  // tiles of stage_tiles() that any layer filters
+  Plane<float> lowest_age_;      // over all layers, where there is more than one
+  PerTile<std::uint8_t> noisy_;  // tiles of stage_tiles() that any layer filters
 };
 
 }  // namespace eigenlight

@@ -20,7 +20,7 @@ struct EigenOptions {
   InnovationOptions innovation;
   BudgetOptions budget;
   GuidedOptions guided;
-  AtrousOptions atrous{.passes = 4, .radius = 1, .luminance_sigmas = 7.0f};
+  AtrousOptions atrous;
   /// [0, 255] frames: pixels of lower age take the guided filter's value in the share 1 - age /
   /// limit.
   float young_age = 2.0f;

@@ -58,7 +58,7 @@ class LightLayer {
   // filter: from the estimate to the picture.
 
   void fill_young(const SharedFrame& shared);
-  [[nodiscard]] std::span<const std::uint8_t> find_noisy(const SharedFrame& shared) {
+  [[nodiscard]] const PerTile<std::uint8_t>& find_noisy(const SharedFrame& shared) {
     return filter_.find_noisy(shared.frame(), output_, output_variance_);
   }
   void filter(const SharedFrame& shared);

@@ -28,9 +28,9 @@ void OutputFilter::warp(const TapSegment& taps, const Rect& row) {
   if (looks_back_) warp_plane(shown_.before, taps, row, shown_.now);
 }
 
-std::span<const std::uint8_t> OutputFilter::find_noisy(const FrameInput& frame,
-                                                       const Planes<3>& output,
-                                                       const Plane<float>& variance) {
+const PerTile<std::uint8_t>& OutputFilter::find_noisy(const FrameInput& frame,
+                                                      const Planes<3>& output,
+                                                      const Plane<float>& variance) {
   return atrous_.find_noisy(frame, options_.quiet_variance, output, variance);
 }
 

@@ -29,9 +29,9 @@ class OutputFilter {
   /// of young_age; their variance falls with it. Returns the pixels in tiles without young ones.
   std::int64_t fill_young(const FilterInputs& in, Planes<3>& output, Plane<float>& variance);
   /// The tiles of stage_tiles() that the a-trous passes filter, 1 each.
-  [[nodiscard]] std::span<const std::uint8_t> find_noisy(const FrameInput& frame,
-                                                         const Planes<3>& output,
-                                                         const Plane<float>& variance);
+  [[nodiscard]] const PerTile<std::uint8_t>& find_noisy(const FrameInput& frame,
+                                                        const Planes<3>& output,
+                                                        const Plane<float>& variance);
   /// Filters the estimate in place, and the variance of its luminance. `planes` are the frame's.
   /// Returns the surface pixels that were quiet enough to be skipped.
   std::int64_t process(const FilterInputs& in, const PlanarBlocks& planes, Planes<3>& output,

@@ -66,7 +66,7 @@ std::int64_t SharedFrame::plan_samples(const Plane<float>& age) {
   return budget_.process(frame_, age, extra_).samples;
 }
 
-void SharedFrame::find_planes(std::span<const std::uint8_t> wanted) {
+void SharedFrame::find_planes(const PerTile<std::uint8_t>& wanted) {
   if (options_.atrous.skip_planar) {
     planes_.find(frame_, wanted);
   } else {

@@ -26,7 +26,7 @@ class SharedFrame {
   /// Plans extra samples for the pixels of low `age` (sample_budget.h). Returns how many.
   [[nodiscard]] std::int64_t plan_samples(const Plane<float>& age);
   /// Finds the planes of the tiles of stage_tiles() that `wanted` names, for the a-trous passes.
-  void find_planes(std::span<const std::uint8_t> wanted);
+  void find_planes(const PerTile<std::uint8_t>& wanted);
   /// The frame at hand has been denoised: until the next read() it is the caller's to look at.
   void finish() { is_finished_ = true; }
   /// Forgets the surfaces of the frame before, as at a cut.

@@ -103,18 +103,16 @@ inline double atrous_weight(const FrameInput& guides, const AtrousOptions& optio
 
 inline AtrousImage atrous_pass(const FrameInput& guides, const AtrousOptions& options,
                                const AtrousImage& image, int step, const Earlier& earlier = {}) {
-  const std::array<double, 5> kernel =
-      options.radius == 2 ? std::array{1 / 16.0, 1 / 4.0, 3 / 8.0, 1 / 4.0, 1 / 16.0}
-                          : std::array{0.0, 1 / 4.0, 1 / 2.0, 1 / 4.0, 0.0};
+  const std::array<double, 3> kernel{1 / 4.0, 1 / 2.0, 1 / 4.0};
   AtrousImage out = image;
   for (int y = 0; y < image.extent.height; ++y) {
     for (int x = 0; x < image.extent.width; ++x) {
       if (guides.surface.id(x, y) == 0) continue;
       double weights = 0.0;
       std::array<double, 4> sum{};
-      for (int j = 0; j < 5; ++j) {
-        for (int i = 0; i < 5; ++i) {
-          const glm::ivec2 q(x + (i - 2) * step, y + (j - 2) * step);
+      for (int j = 0; j < 3; ++j) {
+        for (int i = 0; i < 3; ++i) {
+          const glm::ivec2 q(x + (i - 1) * step, y + (j - 1) * step);
           if (!image.extent.contains(q.x, q.y)) continue;
           const double w = kernel[static_cast<std::size_t>(i)] *
                            kernel[static_cast<std::size_t>(j)] *

@@ -9,7 +9,7 @@
 namespace eigenlight::reference {
 
 struct Taps {
-  std::array<double, 4> weight{};
+  double weight[4] = {};
   /// How far the nearest decision was from falling the other way, in its own units. Where it is
   /// below float noise, float and double may disagree.
   double margin = 1.0;
@@ -63,9 +63,8 @@ inline Taps taps(const FrameInput& current, const PreviousSurface& previous,
     out.margin = std::min(
         {out.margin, std::abs(distance - bound) / depth, std::abs(cosine - options.normal_cosine)});
     if (distance > bound || cosine < options.normal_cosine) continue;
-    const auto index = static_cast<std::size_t>(t);
-    out.weight[index] = (1.0 - std::abs(q.x - x)) * (1.0 - std::abs(q.y - y));
-    sum += out.weight[index];
+    out.weight[t] = (1.0 - std::abs(q.x - x)) * (1.0 - std::abs(q.y - y));
+    sum += out.weight[t];
   }
   out.margin = std::min(out.margin, std::abs(sum - kLeastWeight));
   for (double& w : out.weight) w = sum >= kLeastWeight ? w / sum : 0.0;

@@ -27,12 +27,12 @@ void compare_row(const Frame& current, const PreviousSurface& previous, const Re
   for (int x = row.x0; x < row.x1; ++x) {
     const reference::Taps twin = reference::taps(current, previous, {}, {x, y});
     if (twin.margin < 1e-5) continue;
-    const auto i = static_cast<std::size_t>(x - row.x0);
+    const int i = x - row.x0;
     int used = 0;
-    for (std::size_t t = 0; t < 4; ++t) {
+    for (int t = 0; t < 4; ++t) {
       // Weights are products of differences of pixel coordinates, over a sum of at least 0.01.
       EXPECT_NEAR(taps.weight[t][i], twin.weight[t], 2e-5) << x << ", " << y << " tap " << t;
-      const glm::ivec2 tap = taps.tap(static_cast<int>(t), i);
+      const glm::ivec2 tap = taps.tap(t, i);
       EXPECT_TRUE(taps.weight[t][i] == 0.0f || current.extent().contains(tap.x, tap.y))
           << x << ", " << y << " tap " << t;
       used += twin.weight[t] > 0.0 ? 1 : 0;
@@ -93,7 +93,7 @@ class TapRules : public ::testing::Test {
     TapSegment taps;
     compute_taps(current_, {before_.camera, before_.surface}, options_,
                  {0, pixel.y, 8, pixel.y + 1}, taps);
-    const auto i = static_cast<std::size_t>(pixel.x);
+    const int i = pixel.x;
     return {taps.weight[0][i], taps.weight[1][i], taps.weight[2][i], taps.weight[3][i]};
   }
 

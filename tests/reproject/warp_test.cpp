@@ -21,7 +21,7 @@ TapSegment make_taps(Extent extent, const Rect& row, std::uint32_t seed, const P
   TapSegment taps{};
   for (int x = row.x0; x < row.x1; ++x) {
     PixelRandom random(seed, x, row.y0);
-    const auto i = static_cast<std::size_t>(x - row.x0);
+    const int i = x - row.x0;
     const glm::ivec2 first = place(x);
     taps.x[i] = std::clamp(first.x, -1, extent.width - 1);
     taps.y[i] = std::clamp(first.y, -1, extent.height - 1);
@@ -29,7 +29,7 @@ TapSegment make_taps(Extent extent, const Rect& row, std::uint32_t seed, const P
     for (int t = 0; t < 4; ++t) {
       const glm::ivec2 tap = taps.tap(t, i);
       const bool inside = extent.contains(tap.x, tap.y);
-      taps.weight[static_cast<std::size_t>(t)][i] = inside ? random.between(0.1f, 0.3f) : 0.0f;
+      taps.weight[t][i] = inside ? random.between(0.1f, 0.3f) : 0.0f;
     }
   }
   return taps;
@@ -53,7 +53,7 @@ BasisField warped(const BasisField& from, const TapSegment& taps, const Rect& ro
 void expect_warp(const BasisField& from, const TapSegment& taps, const Rect& row) {
   const BasisField to = warped(from, taps, row);
   for (int x = row.x0; x < row.x1; ++x) {
-    const auto i = static_cast<std::size_t>(x - row.x0);
+    const int i = x - row.x0;
     const double age = reference::warped(taps, i, [&](int tx, int ty) { return from.age(tx, ty); });
     ASSERT_NEAR(to.age(x, row.y0), age, 1e-5 * 40.0);
     for (int c = 0; c < 3; ++c) {
@@ -72,7 +72,7 @@ void expect_plane_warp(const Plane<float>& from, const TapSegment& taps, const R
   to.fill(5.0f);
   warp_plane(from, taps, row, to);
   for (int x = row.x0; x < row.x1; ++x) {
-    const auto i = static_cast<std::size_t>(x - row.x0);
+    const int i = x - row.x0;
     ASSERT_NEAR(to(x, row.y0), reference::warped(taps, i, from), 1e-6) << x << ", " << row.y0;
   }
 }

@@ -56,13 +56,13 @@ TEST_F(AtrousEdge, DepthEdgeIsKept) {
 }
 
 TEST_F(AtrousEdge, LuminanceEdgeIsKept) {
-  scene_.variance.fill(1e-3f);  // 3 sigma: 0.09
+  scene_.variance.fill(1e-3f);  // 7 sigma: 0.22
   scene_.run();
   expect_kept();
 }
 
 TEST_F(AtrousEdge, EdgeOfTheEarlierPictureIsKept) {
-  scene_.variance.fill(0.5f);  // 3 sigma: 2.1, of own light alone it would be blurred
+  scene_.variance.fill(0.5f);  // 7 sigma: 4.9, own light alone would blur the edge
   scene_.run();
   EXPECT_GT(scene_.color[0](31, 8), 1.1f);
   scene_.set_halves(1.0f, 3.0f);

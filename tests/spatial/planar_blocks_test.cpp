@@ -24,8 +24,7 @@ std::string margins(const PlanarBlocks& blocks, int row, int columns = 8) {
 
 PlanarBlocks find(const Frame& frame) {
   PlanarBlocks blocks(frame.extent(), kTolerance);
-  const auto tiles = static_cast<std::size_t>(stage_tiles(frame.extent()).count());
-  blocks.find(frame, std::vector<std::uint8_t>(tiles, 1));
+  blocks.find(frame, PerTile<std::uint8_t>(stage_tiles(frame.extent()), 1));
   return blocks;
 }
 
@@ -108,7 +107,9 @@ TEST(PlanarBlocks, NeighborsMustLieInTheSamePlane) {
 TEST(PlanarBlocks, UnselectedTilesAreNotPlanar) {
   const Frame frame = make_walls(kSmall, kNoEdge);
   PlanarBlocks blocks(kSmall, kTolerance);
-  blocks.find(frame, std::vector<std::uint8_t>{1, 1, 0});
+  PerTile<std::uint8_t> chosen(stage_tiles(kSmall), 1);
+  chosen[2] = 0;
+  blocks.find(frame, chosen);
   for (const auto& [row, expected] : {std::pair{0, '2'}, {1, '2'}, {2, '1'}, {3, '0'}, {4, '0'}}) {
     EXPECT_EQ(margins(blocks, row), std::string(8, expected)) << row;
   }
@@ -119,8 +120,10 @@ TEST(PlanarBlocks, UnselectedTilesAreNotPlanar) {
 TEST(PlanarBlocks, RejectsOtherExtentsAndTolerances) {
   const Frame frame = make_walls(kSmall, kNoEdge);
   PlanarBlocks other({65, 48}, kTolerance), same(kSmall, kTolerance);
-  EXPECT_THROW(other.find(frame, std::vector<std::uint8_t>(6, 1)), std::invalid_argument);
-  EXPECT_THROW(same.find(frame, std::vector<std::uint8_t>(2, 1)), std::invalid_argument);
+  EXPECT_THROW(other.find(frame, PerTile<std::uint8_t>(stage_tiles({65, 48}), 1)),
+               std::invalid_argument);
+  EXPECT_THROW(same.find(frame, PerTile<std::uint8_t>(stage_tiles({64, 32}), 1)),
+               std::invalid_argument);
   EXPECT_THROW(PlanarBlocks(kSmall, 0.0f), std::invalid_argument);
   EXPECT_THROW(PlanarBlocks(kSmall, 1.5f), std::invalid_argument);
 }

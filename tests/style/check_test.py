@@ -16,6 +16,7 @@ GOOD = {
     "temporal/mean.h": "#pragma once\n",
     "spatial/blur_simd.cpp": '#include "spatial/blur_kernel.h"\n#include <hwy/highway.h>\nHWY_EXPORT(Blur);\n',
     "tests/spatial/blur_test.cpp": '#include "spatial/blur.h"\nEL_KERNEL_TEST(Blur, MatchesTheReference) {}\n',
+    "spatial/blur-inl.h": "#include <hwy/highway.h>\n",
     "CMakeLists.txt": "# never -ffast-math\n",
 }
 
@@ -47,7 +48,7 @@ class CheckTest(unittest.TestCase):
             ("spatial/x.cpp", "#include <tbb/parallel_for.h>\n", "belongs in frame/tiles.cpp only"),
             ("render/x.cpp", "#include <embree3/rtcore.h>\n", "belongs in render/rays/embree_*"),
             ("render/x.cpp", "#include <nlohmann/json.hpp>\n", "belongs in sequences/*"),
-            ("spatial/x.cpp", "#include <hwy/highway.h>\n", "belongs in *_simd.cpp only"),
+            ("spatial/x.cpp", "#include <hwy/highway.h>\n", "belongs in *_simd.cpp, *-inl.h only"),
             ("sequences/x.cpp", "#include <OpenImageIO/imageio.h>\n", "belongs in"),
             ("frame/x.cpp", "\n" * 401, "longer than 400 lines"),
             ("frame/x.h", "\n", "no #pragma once"),

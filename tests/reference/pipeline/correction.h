@@ -110,7 +110,6 @@ inline void correct(const CorrectionOptions& options, const FrameInput& frame, R
   cells.geometry.set_camera(frame.camera);
   Image(cells.image.extent).each([&](int x, int y) { load_cell(in, x, y, cells); });
   const AtrousOptions filter{.passes = options.passes,
-                             .radius = 1,
                              .luminance_sigmas = std::numeric_limits<float>::infinity()};
   for (int pass = 0; pass < options.passes; ++pass) {
     cells.image = reference::atrous_pass(cells.geometry.guides, filter, cells.image, 1 << pass);

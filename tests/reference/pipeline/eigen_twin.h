@@ -86,7 +86,7 @@ class EigenTwin {
     Image variance(extent), earlier(extent);
     TapSegment taps;
     bases_.age.each([&](int x, int y) {  // row by row, from left to right
-      const auto at = static_cast<std::size_t>(x % kSegment);
+      const int at = x % kSegment;
       if (at == 0) {
         const int end = std::min(x + kSegment, extent.width);
         compute_taps(frame, surfaces_.previous(), options_.taps, {x, y, end, y + 1}, taps);
