@@ -7,17 +7,16 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "temporal/bases/coefficient_rows_simd.cpp"
 #include <hwy/foreach_target.h>
-#include <hwy/highway.h>
+
+#include "frame/simd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace eigenlight::HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
 constexpr int kHalf = kCoefficientTile / 2;
 // A vector never reaches across the middle of a tile.
-using F = hn::CappedTag<float, kHalf>;
+using Half = hn::CappedTag<float, kHalf>;
 
 // How far a pixel's center is from the middle of its tile, in tiles: the weight of the neighbor on
 // its side.
@@ -40,27 +39,26 @@ struct Blend {
 
   Blend(const float* const (&upper)[3], const float* const (&lower)[3], float weight) {
     const hn::CappedTag<float, kMaxBases> d;
-    for (int k = 0; k < kMaxBases; k += static_cast<int>(hn::Lanes(d))) {
+    for (int k = 0; k < kMaxBases; k += LaneCount(d)) {
       const auto blend = [&](int column) {
-        const auto from = hn::LoadU(d, upper[column] + k);
-        const auto step = hn::Sub(hn::LoadU(d, lower[column] + k), from);
-        return hn::MulAdd(hn::Set(d, weight), step, from);
+        const auto from = LoadU(d, upper[column] + k);
+        const auto step = Sub(LoadU(d, lower[column] + k), from);
+        return MulAdd(Set(d, weight), step, from);
       };
       const auto middle = blend(1);
-      hn::Store(middle, d, own + k);
-      hn::Store(hn::Sub(blend(0), middle), d, left + k);
-      hn::Store(hn::Sub(blend(2), middle), d, right + k);
+      Store(middle, d, own + k);
+      Store(Sub(blend(0), middle), d, left + k);
+      Store(Sub(blend(2), middle), d, right + k);
     }
     own[0] += 1.0f;
   }
 };
 
 void FillRow(float own, float left, float right, float* out) {
-  const F d;
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  for (int i = 0; i < kCoefficientTile; i += lanes) {
-    const auto step = hn::Set(d, i < kHalf ? left : right);
-    hn::Store(hn::MulAdd(hn::Load(d, kNeighbor.at.data() + i), step, hn::Set(d, own)), d, out + i);
+  const Half d;
+  for (int i = 0; i < kCoefficientTile; i += LaneCount(d)) {
+    const auto step = Set(d, i < kHalf ? left : right);
+    Store(MulAdd(Load(d, kNeighbor.at.data() + i), step, Set(d, own)), d, out + i);
   }
 }
 

@@ -1,85 +1,61 @@
 #include <algorithm>
 
-#include "frame/float_traps.h"
-#include "frame/prefetch.h"
 #include "temporal/bases/tile_sums.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "temporal/bases/tile_sums_simd.cpp"
 #include <hwy/foreach_target.h>
-#include <hwy/highway.h>
+
+#include "frame/simd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace eigenlight::HWY_NAMESPACE {
 namespace {
-
-namespace hn = hwy::HWY_NAMESPACE;
-using F = hn::ScalableTag<float>;
-using VF = hn::Vec<F>;
-
-using Color = VF[3];
-
-// Rec. 709 luminance.
-VF Luminance(const Color& v) {
-  const F d;
-  return hn::MulAdd(hn::Set(d, 0.2126f), v[0],
-                    hn::MulAdd(hn::Set(d, 0.7152f), v[1], hn::Mul(hn::Set(d, 0.0722f), v[2])));
-}
-
-// sum_c a_c b_c
-VF Dot(const Color& a, const Color& b) {
-  return hn::MulAdd(a[2], b[2], hn::MulAdd(a[1], b[1], hn::Mul(a[0], b[0])));
-}
 
 // A vector of pixels in the block of its bases.
 struct Block {
   const BasisField& field;
   const float* at;
 
-  void Load(int k, Color& v) const {
-    for (int c = 0; c < 3; ++c) v[c] = hn::Load(F(), at + kBlock * field.line_of(c, k));
+  [[nodiscard]] HWY_INLINE VF3 Basis(int k) const {
+    const auto load = [&](int c) { return Load(F(), at + kBlock * field.line_of(c, k)); };
+    return {{load(0), load(1), load(2)}};
   }
 };
 
 // What a vector of pixels brings: the residual r = u - V_0, the weight m of each pixel, how many
 // count, and how many of them are off by far more than expected.
 struct Pixels {
-  Color residual;
+  VF3 residual;
   VF weight;
-  std::size_t used = 0, outliers = 0;
+  int used = 0, outliers = 0;
 };
 
 // Bounded, outliers lose influence.
 Pixels LoadPixels(const SumInputs& in, const Block& block, int x, int y, bool is_bounded) {
-  const F d;
-  const VF largest = hn::Set(d, kLargestLight), one = hn::Set(d, 1.0f);
-  Color u, v;
-  for (std::size_t c = 0; c < 3; ++c) {
-    prefetch_below(in.light[c], x, y);
-    u[c] = hn::LoadU(d, in.light[c].row(y) + x);
-  }
-  block.Load(0, v);
-  const VF age = hn::Load(d, in.bases.ages(x, y)), luminance = Luminance(v);
-  prefetch_below(in.variance, x, y);
-  const VF variance = hn::LoadU(d, in.variance.row(y) + x);
-  const VF expected = hn::MulAdd(hn::Mul(hn::Set(d, 0.01f), luminance), luminance, variance);
+  const VF one = Set(1);
+  const VF3 light = LoadAndPrefetch(in.light, x, y), first = block.Basis(0);
+  const VF age = Load(F(), in.bases.ages(x, y)), luminance = Luminance(first);
+  const VF variance = LoadAndPrefetch(in.variance, x, y);
+  const VF expected = MulAdd(Mul(Set(0.01f), luminance), luminance, variance);
   // Comparisons with NaN are false; the age behind the last pixel is 0.
-  auto used = hn::And(hn::Gt(age, hn::Zero(d)), hn::Gt(expected, hn::Set(d, 1e-30f)));
-  for (const VF& value : u) used = hn::And(used, hn::Le(hn::Abs(value), largest));
+  MF used = And(Gt(age, Zero()), Gt(expected, Set(1e-30f)));
+  for (int c = 0; c < 3; ++c) used = And(used, Le(Abs(light[c]), Set(kLargestLight)));
   Pixels pixels;
-  for (int c = 0; c < 3; ++c) pixels.residual[c] = hn::IfThenElseZero(used, hn::Sub(u[c], v[c]));
-  pixels.used = hn::CountTrue(d, used);
-  VF weight = hn::Div(age, hn::Mul(hn::Add(age, one), hn::IfThenElse(used, expected, one)));
-  weight = hn::IfThenElseZero(used, weight);
+  for (int c = 0; c < 3; ++c) {
+    pixels.residual[c] = IfThenElseZero(used, Sub(light[c], first[c]));
+  }
+  pixels.used = CountLanes(used);
+  const VF weight = Div(age, Mul(Add(age, one), IfThenElse(used, expected, one)));
+  pixels.weight = IfThenElseZero(used, weight);
   if (is_bounded) {
     const VF off = Luminance(pixels.residual);
-    const VF excess =
-        hn::Mul(hn::Mul(hn::Mul(weight, off), off), hn::Set(d, 1.0f / (kOutlier * kOutlier)));
-    const auto beyond = hn::Gt(excess, one);
-    weight = hn::Div(weight, hn::IfThenElse(beyond, excess, one));
-    pixels.outliers = hn::CountTrue(d, beyond);
+    const VF square = Mul(Mul(pixels.weight, off), off);
+    const VF excess = Mul(square, Set(1.0f / (kOutlier * kOutlier)));
+    const MF beyond = Gt(excess, one);
+    pixels.weight = Div(pixels.weight, IfThenElse(beyond, excess, one));
+    pixels.outliers = CountLanes(beyond);
   }
-  pixels.weight = weight;
   return pixels;
 }
 
@@ -105,24 +81,20 @@ void ForEachSum(int active, LaneSums& lanes, TileSums& sums, const Visit& visit)
 }
 
 void AddPixels(const Pixels& pixels, const Block& block, int active, LaneSums& sums) {
-  Color steady;
-  block.Load(0, steady);
+  const VF3 steady = block.Basis(0);
   for (int j = 0; j < active; ++j) {
-    Color own;
-    block.Load(j, own);
-    for (VF& value : own) value = hn::Mul(pixels.weight, value);
-    const VF weighted = Dot(own, pixels.residual), along = Dot(own, steady);
-    const auto add = [](VF value, VF& sum) { sum = hn::Add(sum, value); };
-    const auto add_product = [](VF a, VF b, VF& sum) { sum = hn::MulAdd(a, b, sum); };
+    VF3 own = block.Basis(j);
+    for (int c = 0; c < 3; ++c) own[c] = Mul(pixels.weight, own[c]);
+    const VF weighted = DotInOrder(own, pixels.residual), along = DotInOrder(own, steady);
+    const auto add = [](VF value, VF& sum) { sum = Add(sum, value); };
+    const auto add_product = [](VF a, VF b, VF& sum) { sum = MulAdd(a, b, sum); };
     add(weighted, sums.innovation[j]);
     add_product(weighted, weighted, sums.scatter_rr[j]);
     add_product(weighted, along, sums.scatter_r0[j]);
     add_product(along, along, sums.scatter_00[j]);
     add(along, sums.gram[packed(0, j)]);
     for (int k = 1; k <= j; ++k) {
-      Color other;
-      block.Load(k, other);
-      add(Dot(own, other), sums.gram[packed(k, j)]);
+      add(DotInOrder(own, block.Basis(k)), sums.gram[packed(k, j)]);
     }
   }
 }
@@ -130,10 +102,10 @@ void AddPixels(const Pixels& pixels, const Block& block, int active, LaneSums& s
 void AddRows(const SumInputs& in, const Rect& rows, bool is_bounded, TileSums& sums) {
   const int active = std::min(in.active, in.bases.bases());
   LaneSums lanes;
-  ForEachSum(active, lanes, sums, [](VF& lane, double&) { lane = hn::Zero(F()); });
-  std::size_t used = 0, outliers = 0;
+  ForEachSum(active, lanes, sums, [](VF& lane, double&) { lane = Zero(F()); });
+  int used = 0, outliers = 0;
   for (int y = rows.y0; y < rows.y1; ++y) {
-    for (int x = rows.x0; x < rows.x1; x += static_cast<int>(hn::Lanes(F()))) {
+    for (int x = rows.x0; x < rows.x1; x += LaneCount()) {
       const Block block{in.bases, in.bases.at(x, y)};
       const Pixels pixels = LoadPixels(in, block, x, y, is_bounded);
       if (pixels.used == 0) continue;
@@ -145,9 +117,7 @@ void AddRows(const SumInputs& in, const Rect& rows, bool is_bounded, TileSums& s
   if (used == 0) return;
   sums.pixels += static_cast<double>(used);
   sums.outliers += static_cast<double>(outliers);
-  ForEachSum(active, lanes, sums, [](VF& lane, double& sum) {
-    sum += static_cast<double>(hn::GetLane(hn::SumOfLanes(F(), lane)));
-  });
+  ForEachSum(active, lanes, sums, [](VF& lane, double& sum) { sum += SumLanes(lane); });
 }
 
 void AddTile(const SumInputs& in, const Rect& tile, bool is_bounded, TileSums& sums) {

@@ -1,20 +1,14 @@
-#include "frame/float_traps.h"
-#include "frame/prefetch.h"
 #include "temporal/bases/update.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "temporal/bases/update_simd.cpp"
 #include <hwy/foreach_target.h>
-#include <hwy/highway.h>
+
+#include "frame/simd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace eigenlight::HWY_NAMESPACE {
 namespace {
-
-namespace hn = hwy::HWY_NAMESPACE;
-using F = hn::ScalableTag<float>;
-using VF = hn::Vec<F>;
-using MF = hn::Mask<F>;
 
 struct Row {
   CoefficientRows coefficient;     // c; c_0 is the gain
@@ -28,15 +22,7 @@ struct Place {
   MF lanes;
 };
 
-VF Load(const Plane<float>& plane, const Place& at) {
-  prefetch_below(plane, at.x, at.y);
-  return hn::Load(F(), plane.row(at.y) + at.x);
-}
-
-void Store(VF v, const Place& at, Plane<float>& plane) {
-  prefetch_below(plane, at.x, at.y);
-  hn::Store(v, F(), plane.row(at.y) + at.x);
-}
+VF LoadAt(const Plane<float>& plane, const Place& at) { return LoadAndPrefetch(plane, at.x, at.y); }
 
 // What a vector of pixels does with all of its channels.
 struct Step {
@@ -48,24 +34,22 @@ struct Step {
 
 Step FindStep(const UpdateInputs& in, const Place& at, const Row& row) {
   const F d;
-  const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-  VF h = hn::Load(d, row.learning_rates[0] + at.i);
+  const VF zero = Zero(), one = Set(1.0f);
+  VF h = Load(d, row.learning_rates[0] + at.i);
   for (int k = 1; k < in.active; ++k) {
-    h = hn::MulAdd(hn::Load(d, row.coefficient[k] + at.i),
-                   hn::Load(d, row.learning_rates[k] + at.i), h);
+    h = MulAdd(Load(d, row.coefficient[k] + at.i), Load(d, row.learning_rates[k] + at.i), h);
   }
   // M is positive definite, so h >= 1 / M_00 = 1 at tile centers; interpolation may fall short.
-  h = hn::IfThenElse(hn::Gt(h, one), h, one);
-  const VF samples = Load(in.samples, at), age = Load(in.new_age, at);
+  h = IfThenElse(Gt(h, one), h, one);
+  const VF samples = LoadAt(in.samples, at), age = LoadAt(in.new_age, at);
   Step step;
-  step.usable = hn::And(at.lanes, hn::Gt(samples, zero));
-  step.known = hn::And(at.lanes, hn::Gt(Load(in.old_age, at), zero));
-  const VF history =
-      hn::IfThenElseZero(hn::And(step.known, hn::Gt(age, samples)), hn::Sub(age, samples));
-  const VF total = hn::IfThenElse(step.usable, hn::MulAdd(h, samples, history), one);
-  step.leverage = hn::Div(one, h);
-  step.weight = hn::IfThenElseZero(step.usable, hn::Div(samples, total));
-  step.age = hn::IfThenElseZero(hn::Or(step.usable, step.known), age);
+  step.usable = And(at.lanes, Gt(samples, zero));
+  step.known = And(at.lanes, Gt(LoadAt(in.old_age, at), zero));
+  const VF history = IfThenElseZero(And(step.known, Gt(age, samples)), Sub(age, samples));
+  const VF total = IfThenElse(step.usable, MulAdd(h, samples, history), one);
+  step.leverage = Div(one, h);
+  step.weight = IfThenElseZero(step.usable, Div(samples, total));
+  step.age = IfThenElseZero(Or(step.usable, step.known), age);
   return step;
 }
 
@@ -75,50 +59,47 @@ VF UpdateBases(const UpdateInputs& in, const Step& step, VF residual, VF correct
   const F d;
   float* block = bases.at(at.x, at.y);
   const auto line = [&](int k) { return block + kBlock * bases.line_of(c, k); };
-  VF move = hn::IfThenElseZero(step.usable, hn::Mul(step.weight, residual));
-  if (in.newborn == 0) move = hn::MulAdd(correction, step.leverage, move);
-  const auto learning_rates = [&](int k) { return hn::Load(d, row.learning_rates[k] + at.i); };
-  const auto coefficient = [&](int k) { return hn::Load(d, row.coefficient[k] + at.i); };
-  const auto old = [&](int k) { return hn::IfThenElseZero(step.known, hn::Load(d, line(k))); };
-  VF estimate = hn::MulAdd(learning_rates(0), move, hn::Mul(coefficient(0), old(0)));
-  hn::Store(estimate, d, line(0));
+  VF move = IfThenElseZero(step.usable, Mul(step.weight, residual));
+  if (in.newborn == 0) move = MulAdd(correction, step.leverage, move);
+  const auto learning_rates = [&](int k) { return Load(d, row.learning_rates[k] + at.i); };
+  const auto coefficient = [&](int k) { return Load(d, row.coefficient[k] + at.i); };
+  const auto old = [&](int k) { return IfThenElseZero(step.known, Load(d, line(k))); };
+  VF estimate = MulAdd(learning_rates(0), move, Mul(coefficient(0), old(0)));
+  Store(estimate, d, line(0));
   for (int k = 1; k < in.active; ++k) {
-    const VF value = hn::MulAdd(learning_rates(k), move, old(k));
-    hn::Store(value, d, line(k));
-    estimate = hn::MulAdd(coefficient(k), value, estimate);
+    const VF value = MulAdd(learning_rates(k), move, old(k));
+    Store(value, d, line(k));
+    estimate = MulAdd(coefficient(k), value, estimate);
   }
-  for (int k = in.active; k < bases.bases(); ++k) hn::Store(hn::Zero(d), d, line(k));
+  for (int k = in.active; k < bases.bases(); ++k) Store(Zero(), d, line(k));
   if (in.newborn == 0) return estimate;
-  hn::Store(correction, d, line(in.newborn));
-  return hn::Add(estimate, correction);
+  Store(correction, d, line(in.newborn));
+  return Add(estimate, correction);
 }
 
 void UpdateVector(const UpdateInputs& in, const Place& at, const Row& row,
                   const UpdateOutputs& out) {
   const Step step = FindStep(in, at, row);
   prefetch_below(out.bases, at.x, at.y);
-  for (std::size_t c = 0; c < 3; ++c) {
+  for (int c = 0; c < 3; ++c) {
     const VF correction = in.correction == nullptr
-                              ? hn::Zero(F())
-                              : hn::IfThenElseZero(step.known, Load((*in.correction)[c], at));
-    const VF residual = hn::Sub(Load(in.residual[c], at), correction);
-    Store(UpdateBases(in, step, residual, correction, static_cast<int>(c), at, row, out.bases), at,
-          out.estimate[c]);
+                              ? Zero()
+                              : IfThenElseZero(step.known, LoadAt((*in.correction)[c], at));
+    const VF residual = Sub(LoadAt(in.residual[c], at), correction);
+    const VF estimate = UpdateBases(in, step, residual, correction, c, at, row, out.bases);
+    StoreAndPrefetch(estimate, out.estimate[c], at.x, at.y);
   }
-  hn::Store(step.age, F(), out.bases.ages(at.x, at.y));
+  Store(step.age, F(), out.bases.ages(at.x, at.y));
 }
 
 void UpdateTile(const UpdateInputs& in, const Rect& tile, const UpdateOutputs& out) {
-  const F d;
-  const int lanes = static_cast<int>(hn::Lanes(d));
   Row row;
   for (int y = tile.y0; y < tile.y1; ++y) {
     const Rect segment{tile.x0, y, tile.x1, y + 1};
     in.coefficients.rows(segment, in.active, row.coefficient);
     in.learning_rates.rows(segment, in.active, row.learning_rates);
-    for (int x = tile.x0; x < tile.x1; x += lanes) {
-      UpdateVector(in, {x, y, x - tile.x0, hn::FirstN(d, static_cast<std::size_t>(tile.x1 - x))},
-                   row, out);
+    for (int x = tile.x0; x < tile.x1; x += LaneCount()) {
+      UpdateVector(in, {x, y, x - tile.x0, FirstLanes(tile.x1 - x)}, row, out);
     }
   }
 }

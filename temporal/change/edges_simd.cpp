@@ -1,148 +1,81 @@
-#include <algorithm>
-
-#include "frame/float_traps.h"
-#include "frame/prefetch.h"
 #include "temporal/change/edges.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "temporal/change/edges_simd.cpp"
 #include <hwy/foreach_target.h>
-#include <hwy/highway.h>
+
+#include "frame/surface-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace eigenlight::HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
-using F = hn::ScalableTag<float>;
-using I = hn::RebindToSigned<F>;
-using VF = hn::Vec<F>;
-using VI = hn::Vec<I>;
-using MF = hn::Mask<F>;
-
 constexpr float kBlends = 1e-3f;  // pixels off whole ones
 
-VF OffWhole(VF motion) { return hn::Abs(hn::Sub(motion, hn::Round(motion))); }
+VF OffWhole(VF motion) { return Abs(Sub(motion, hn::Round(motion))); }
 
-// The surfaces of a vector of pixels, from column x of row y on.
-struct Seen {
-  VF normal[3], depth;
-  VI id;
-};
-
-Seen Load(const GBuffer& surface, int x, int y) {
-  const F d;
-  const auto load = [&](const Plane<float>& plane) { return hn::LoadU(d, plane.row(y) + x); };
-  return {{load(surface.normal[0]), load(surface.normal[1]), load(surface.normal[2])},
-          load(surface.depth),
-          hn::LoadU(I(), reinterpret_cast<const std::int32_t*>(surface.id.row(y)) + x)};
-}
-
-// What pixels ask of their neighbors.
-struct Wanted {
-  Seen own;
-  VF x, y, c;              // N . ray(column, line) = x column + y line + c
-  VF distance, tolerance;  // N . X; of the plane
+// A vector of pixels, and how far off its own surface a neighbor's may be.
+struct Query {
+  Surface own;
+  TangentPlanes planes;
+  VF tolerance;  // of the plane
   VF cosine;
 };
 
-Wanted Ask(const FrameInput& frame, const TapOptions& options, const Seen& own, int x, int y) {
-  const F d;
-  const Camera& camera = frame.camera;
-  const glm::mat3& m = camera.world_to_view;
-  const auto view_normal = [&](int r) {
-    VF v = hn::Mul(hn::Set(d, m[0][r]), own.normal[0]);
-    v = hn::MulAdd(hn::Set(d, m[1][r]), own.normal[1], v);
-    return hn::MulAdd(hn::Set(d, m[2][r]), own.normal[2], v);
-  };
-  Wanted w;
-  w.own = own;
-  const VF inverse_focal = hn::Set(d, 1.0f / camera.focal);
-  w.x = hn::Mul(view_normal(0), inverse_focal);
-  w.y = hn::Mul(view_normal(1), inverse_focal);
-  w.c = hn::NegMulAdd(w.x, hn::Set(d, camera.center.x - 0.5f),
-                      hn::NegMulAdd(w.y, hn::Set(d, camera.center.y - 0.5f), view_normal(2)));
-  const VF along = hn::MulAdd(w.x, hn::Iota(d, static_cast<float>(x)),
-                              hn::MulAdd(w.y, hn::Set(d, static_cast<float>(y)), w.c));
-  w.distance = hn::Mul(own.depth, along);
-  w.tolerance = hn::Mul(own.depth, hn::Set(d, options.plane_distance));
-  w.cosine = hn::Set(d, options.normal_cosine);
-  return w;
+Query LoadQuery(const FrameInput& frame, const TapOptions& options, int x, int y) {
+  const Surface own = LoadSurface(frame.surface, x, y);
+  return {own, TangentPlanes(frame.camera, own.normal, own.depth, x, y),
+          Mul(own.depth, Set(options.plane_distance)), Set(options.normal_cosine)};
 }
 
 // Where the neighbors from column x of row y on show the same surface.
-MF Same(const Wanted& w, const Seen& seen, int x, int y) {
-  const F d;
-  const VF along = hn::MulAdd(w.x, hn::Iota(d, static_cast<float>(x)),
-                              hn::MulAdd(w.y, hn::Set(d, static_cast<float>(y)), w.c));
-  const VF off = hn::Abs(hn::MulSub(along, seen.depth, w.distance));
-  VF cosine = hn::Mul(w.own.normal[0], seen.normal[0]);
-  cosine = hn::MulAdd(w.own.normal[1], seen.normal[1], cosine);
-  cosine = hn::MulAdd(w.own.normal[2], seen.normal[2], cosine);
-  return hn::And(hn::RebindMask(d, hn::Eq(seen.id, w.own.id)),
-                 hn::And(hn::Le(off, w.tolerance), hn::Ge(cosine, w.cosine)));
+MF IsSame(const Query& q, const GBuffer& surface, int x, int y) {
+  const Surface neighbor = LoadSurface(surface, x, y);
+  const VF along = q.planes.Along(Iota(x), Set(y));
+  const VF off = Abs(MulSub(along, neighbor.depth, q.planes.distance));
+  const VF cosine = DotInOrder(q.own.normal, neighbor.normal);
+  return And(RebindMask(F(), Eq(neighbor.id, q.own.id)),
+             And(Le(off, q.tolerance), Ge(cosine, q.cosine)));
 }
 
-// The same of the neighbors to the left (step -1) or right (1); what is beside the image does not
-// count.
-MF SameBeside(const Wanted& w, const GBuffer& surface, int x, int y, int step) {
-  const F d;
-  const VF column = hn::Iota(d, static_cast<float>(x + step));
-  const VF width = hn::Set(d, static_cast<float>(surface.depth.width()));
-  const MF outside = hn::Or(hn::Lt(column, hn::Zero(d)), hn::Ge(column, width));
-  return hn::Or(outside, Same(w, Load(surface, x + step, y), x + step, y));
+// IsSame() of the neighbors to the left (step -1) or right (1). Beside the image it is true.
+MF IsSameBeside(const Query& q, const GBuffer& surface, int x, int y, int step) {
+  const VF column = Iota(x + step);
+  const MF outside = Or(Lt(column, Zero()), Ge(column, Set(surface.depth.width())));
+  return Or(outside, IsSame(q, surface, x + step, y));
 }
 
 // Where all neighbors show the pixel's own surface.
 MF IsInside(const FrameInput& frame, const TapOptions& options, int x, int y) {
   const GBuffer& surface = frame.surface;
-  const Wanted wanted = Ask(frame, options, Load(surface, x, y), x, y);
-  MF same = hn::And(SameBeside(wanted, surface, x, y, -1), SameBeside(wanted, surface, x, y, 1));
-  if (y > 0) same = hn::And(same, Same(wanted, Load(surface, x, y - 1), x, y - 1));
-  if (y + 1 < frame.extent().height) {
-    same = hn::And(same, Same(wanted, Load(surface, x, y + 1), x, y + 1));
-  }
+  const Query q = LoadQuery(frame, options, x, y);
+  MF same = And(IsSameBeside(q, surface, x, y, -1), IsSameBeside(q, surface, x, y, 1));
+  if (y > 0) same = And(same, IsSame(q, surface, x, y - 1));
+  if (y + 1 < frame.extent().height) same = And(same, IsSame(q, surface, x, y + 1));
   return same;
 }
 
 void FindEdges(const FrameInput& frame, const TapOptions& options, const Rect& tile,
                Plane<std::uint8_t>& edge) {
-  const F d;
-  const I di;
-  const hn::Rebind<std::uint8_t, F> bytes;
-  const VF blends = hn::Set(d, kBlends);
-  for (int y = tile.y0; y < tile.y1; ++y) {
-    for (int x = tile.x0; x < tile.x1; x += static_cast<int>(hn::Lanes(d))) {
-      const auto load = [&](const Plane<float>& plane) { return hn::LoadU(d, plane.row(y) + x); };
-      prefetch_below(frame.surface.depth, x, y);
-      const VF blend = hn::Add(OffWhole(load(frame.motion[0])), OffWhole(load(frame.motion[1])));
-      const VI id =
-          hn::LoadU(di, reinterpret_cast<const std::int32_t*>(frame.surface.id.row(y)) + x);
-      MF found = hn::And(hn::RebindMask(d, hn::Ne(id, hn::Zero(di))), hn::Gt(blend, blends));
-      if (!hn::AllFalse(d, found)) found = hn::AndNot(IsInside(frame, options, x, y), found);
-      const VI flag = hn::IfThenElseZero(hn::RebindMask(di, found), hn::Set(di, 1));
-      hn::StoreU(hn::DemoteTo(bytes, flag), bytes, edge.row(y) + x);
-    }
-  }
+  ForEachVector(tile, [&](int x, int y) {
+    prefetch_below(frame.surface.depth, x, y);
+    const VF blend =
+        Add(OffWhole(Load(frame.motion[0], x, y)), OffWhole(Load(frame.motion[1], x, y)));
+    MF found = And(HasSurface(frame.surface.id, x, y), Gt(blend, Set(kBlends)));
+    if (!AllFalse(F(), found)) found = AndNot(IsInside(frame, options, x, y), found);
+    StoreFlags(found, edge, x, y);
+  });
 }
 
 void ShortenAges(const Plane<std::uint8_t>& edge, const Plane<float>& samples,
                  const LongestAges& longest, const Rect& tile, Plane<float>& age) {
-  const F d;
-  const I di;
-  const hn::Rebind<std::uint8_t, F> bytes;
-  const VF inside = hn::Set(d, longest.inside), at_edges = hn::Set(d, longest.at_edges);
-  for (int y = tile.y0; y < tile.y1; ++y) {
-    for (int x = tile.x0; x < tile.x1; x += static_cast<int>(hn::Lanes(d))) {
-      prefetch_below(edge, x, y);
-      const VI flag = hn::PromoteTo(di, hn::LoadU(bytes, edge.row(y) + x));
-      const MF is_edge = hn::RebindMask(d, hn::Ne(flag, hn::Zero(di)));
-      const VF most =
-          hn::Max(hn::IfThenElse(is_edge, at_edges, inside), hn::LoadU(d, samples.row(y) + x));
-      float* n = age.row(y) + x;
-      hn::StoreU(hn::Min(hn::LoadU(d, n), most), d, n);
-    }
-  }
+  const VF inside = Set(longest.inside), at_edges = Set(longest.at_edges);
+  ForEachVector(tile, [&](int x, int y) {
+    prefetch_below(edge, x, y);
+    const MF is_edge = RebindMask(F(), Ne(LoadBytes(edge, x, y), Zero(I())));
+    const VF most = Max(IfThenElse(is_edge, at_edges, inside), Load(samples, x, y));
+    Store(Min(Load(age, x, y), most), age, x, y);
+  });
 }
 
 }  // namespace

@@ -1,22 +1,17 @@
 #include <algorithm>
 
-#include "frame/float_traps.h"
-#include "frame/prefetch.h"
 #include "frame/strips.h"
 #include "temporal/change/innovation.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "temporal/change/innovation_simd.cpp"
 #include <hwy/foreach_target.h>
-#include <hwy/highway.h>
+
+#include "frame/simd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace eigenlight::HWY_NAMESPACE {
 namespace {
-
-namespace hn = hwy::HWY_NAMESPACE;
-using F = hn::ScalableTag<float>;
-using VF = hn::Vec<F>;
 
 constexpr int kRadius = 4;
 constexpr int kWindow = 2 * kRadius + 1;
@@ -34,24 +29,24 @@ struct Sums {
 // values, of which `count` + 8 are meant; reads up to two vectors more.
 void SumNine(float* values, int count, float* sums) {
   const F d;
-  const int lanes = static_cast<int>(hn::Lanes(d));
+  const int lanes = LaneCount();
   alignas(64) float pairs[kWidth], fours[kWidth];
   for (int i = 0; i < count + 7; i += lanes) {
-    hn::Store(hn::Add(hn::Load(d, values + i), hn::LoadU(d, values + i + 1)), d, pairs + i);
+    Store(Add(Load(d, values + i), LoadU(d, values + i + 1)), d, pairs + i);
   }
   for (int i = 0; i < count + 5; i += lanes) {
-    hn::Store(hn::Add(hn::Load(d, pairs + i), hn::LoadU(d, pairs + i + 2)), d, fours + i);
+    Store(Add(Load(d, pairs + i), LoadU(d, pairs + i + 2)), d, fours + i);
   }
   for (int i = 0; i < count; i += lanes) {
-    const auto eight = hn::Add(hn::Load(d, fours + i), hn::LoadU(d, fours + i + 4));
-    hn::Store(hn::Add(eight, hn::LoadU(d, values + i + 8)), d, sums + i);
+    const auto eight = Add(Load(d, fours + i), LoadU(d, fours + i + 4));
+    Store(Add(eight, LoadU(d, values + i + 8)), d, sums + i);
   }
 }
 
 // Horizontal window sums of row y for the pixels of the tile.
 void SumRow(const InnovationInputs& in, const Rect& tile, int y, Sums& sums) {
   const F d;
-  const int lanes = static_cast<int>(hn::Lanes(d)), count = tile.x1 - tile.x0;
+  const int lanes = LaneCount(), count = tile.x1 - tile.x0;
   alignas(64) float confirmed[kWidth], value[kWidth], square[kWidth];
   const int first = std::max(tile.x0 - kRadius, 0);
   const int last = std::min(tile.x1 + kRadius, in.innovation.width());
@@ -62,12 +57,12 @@ void SumRow(const InnovationInputs& in, const Rect& tile, int y, Sums& sums) {
   const int seen = last - first;
   const auto take = [&](auto tag, int i) {
     prefetch_below(in.innovation, first + i, y);
-    const auto e = hn::LoadU(tag, innovation + i);
-    const auto missing = hn::IsNaN(e);
-    const auto v = hn::IfThenZeroElse(missing, e);
-    hn::StoreU(hn::IfThenZeroElse(missing, hn::Set(tag, 1.0f)), tag, confirmed + shift + i);
-    hn::StoreU(v, tag, value + shift + i);
-    hn::StoreU(hn::Mul(v, v), tag, square + shift + i);
+    const auto e = LoadU(tag, innovation + i);
+    const auto missing = IsNaN(e);
+    const auto v = IfThenZeroElse(missing, e);
+    StoreU(IfThenZeroElse(missing, Set(tag, 1.0f)), tag, confirmed + shift + i);
+    StoreU(v, tag, value + shift + i);
+    StoreU(Mul(v, v), tag, square + shift + i);
   };
   // The row starts off the lines, so that its padding does not reach to the end of a last vector:
   // that one goes back over what others have taken.
@@ -91,23 +86,21 @@ struct Found {
 
 // The innovation test. n: frames of history, s: this frame's samples, count >= 2.
 Found TestInnovation(const InnovationOptions& options, VF n, VF s, VF count, VF sum, VF square) {
-  const F d;
-  const VF one = hn::Set(d, 1.0f), zero = hn::Zero(d);
-  const VF inverse_count = hn::Div(one, count), mean = hn::Mul(sum, inverse_count);
-  const VF mean2 = hn::Mul(mean, mean);
-  const VF variance = hn::Max(hn::MulSub(square, inverse_count, mean2), zero);
-  const VF old = hn::Div(one, n);
-  const VF noise = hn::Mul(hn::Mul(variance, inverse_count), hn::Add(one, old));
-  VF history = hn::Mul(variance, old);
+  const VF one = Set(1.0f), zero = Zero();
+  const VF inverse_count = Div(one, count), mean = Mul(sum, inverse_count);
+  const VF mean2 = Mul(mean, mean);
+  const VF variance = Max(MulSub(square, inverse_count, mean2), zero);
+  const VF old = Div(one, n);
+  const VF noise = Mul(Mul(variance, inverse_count), Add(one, old));
+  VF history = Mul(variance, old);
   if (options.test) {
-    const VF bound = hn::Mul(hn::Set(d, options.threshold), noise);
-    history = hn::Add(history, hn::Max(hn::Sub(mean2, bound), zero));
+    const VF bound = Mul(Set(options.threshold), noise);
+    history = Add(history, Max(Sub(mean2, bound), zero));
   }
   // s / weight, with the weight of this frame history / total; without any noise s / (n + s).
-  const VF total = hn::Add(history, hn::Div(variance, s));
-  const auto noisy = hn::Gt(total, zero);
-  const VF age = hn::Div(hn::IfThenElse(noisy, hn::Mul(s, total), hn::Add(n, s)),
-                         hn::IfThenElse(noisy, history, one));
+  const VF total = Add(history, Div(variance, s));
+  const auto noisy = Gt(total, zero);
+  const VF age = Div(IfThenElse(noisy, Mul(s, total), Add(n, s)), IfThenElse(noisy, history, one));
   return {variance, age};
 }
 
@@ -115,54 +108,48 @@ Found TestInnovation(const InnovationOptions& options, VF n, VF s, VF count, VF 
 void FinishRow(const InnovationInputs& in, const InnovationOptions& options, const Rect& row,
                const Sums& window, const InnovationOutputs& out) {
   const F d;
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  const VF one = hn::Set(d, 1.0f), two = hn::Set(d, 2.0f);
-  const VF longest = hn::Set(d, options.max_age), shortest_step = hn::Set(d, 1.0f / 16.0f);
-  for (int i = 0; i < row.x1 - row.x0; i += lanes) {
-    const auto load = [&](const Plane<float>& plane) {
-      prefetch_below(plane, row.x0 + i, row.y0);
-      return hn::LoadU(d, plane.row(row.y0) + row.x0 + i);
-    };
-    const VF age = load(in.age), samples = load(in.samples), count = hn::Load(d, window.count + i);
-    const auto confirmed = hn::Not(hn::IsNaN(load(in.innovation))), alone = hn::Lt(count, two);
+  const int y = row.y0;
+  const VF one = Set(1), longest = Set(options.max_age);
+  for (int i = 0; i < row.x1 - row.x0; i += LaneCount()) {
+    const int x = row.x0 + i;
+    const VF age = LoadAndPrefetch(in.age, x, y), samples = LoadAndPrefetch(in.samples, x, y);
+    const VF count = Load(d, window.count + i);
+    const MF confirmed = Not(IsNaN(LoadAndPrefetch(in.innovation, x, y)));
+    const MF alone = Lt(count, Set(2));
     // Stand-ins keep the arithmetic of pixels finite whose result is not used.
-    const VF n = hn::IfThenElse(confirmed, age, one), s = hn::IfThenElse(confirmed, samples, one);
-    const Found found =
-        TestInnovation(options, n, s, hn::IfThenElse(alone, one, count),
-                       hn::Load(d, window.mean + i), hn::Load(d, window.square + i));
+    const VF n = IfThenElse(confirmed, age, one), s = IfThenElse(confirmed, samples, one);
+    const Found found = TestInnovation(options, n, s, IfThenElse(alone, one, count),
+                                       Load(d, window.mean + i), Load(d, window.square + i));
     // An age below the frame's own samples would weigh them more than once.
-    const VF most = hn::Max(longest, s);
-    const VF tested = hn::Min(found.age, most);
-    // Alone there is no spread to test a mean against. A new pixel starts; one without usable
-    // sample waits, as it has samples 0.
-    const VF unconfirmed = hn::Min(hn::Add(age, samples), hn::Max(longest, samples));
-    const VF lone = hn::Min(hn::Add(n, s), most);
-    hn::StoreU(hn::IfThenElse(confirmed, hn::IfThenElse(alone, lone, tested), unconfirmed), d,
-               out.age.row(row.y0) + row.x0 + i);
-    // The memory of the variance is that of the light, but no longer than 16 frames.
-    const VF step = hn::Max(hn::Div(s, tested), shortest_step);
-    prefetch_below(out.variance, row.x0 + i, row.y0);
-    float* variances = out.variance.row(row.y0) + row.x0 + i;
-    const VF before = hn::LoadU(d, variances);
-    const VF moved = hn::MulAdd(step, hn::Sub(found.variance, before), before);
-    hn::StoreU(hn::IfThenElse(hn::AndNot(alone, confirmed), moved, before), d, variances);
+    const VF most = Max(longest, s);
+    const VF tested = Min(found.age, most);
+    // Without neighbors there is no spread to test a mean against. A new pixel starts; one without
+    // a usable sample has samples 0 and so keeps its age.
+    const VF unconfirmed = Min(Add(age, samples), Max(longest, samples));
+    const VF lone = Min(Add(n, s), most);
+    Store(IfThenElse(confirmed, IfThenElse(alone, lone, tested), unconfirmed), out.age, x, y);
+    // The variance remembers as long as the light does, but at most 16 frames.
+    const VF step = Max(Div(s, tested), Set(1.0f / 16.0f));
+    const VF before = LoadAndPrefetch(out.variance, x, y);
+    const VF moved = MulAdd(step, Sub(found.variance, before), before);
+    Store(IfThenElse(AndNot(alone, confirmed), moved, before), out.variance, x, y);
   }
 }
 
 void AddRows(const Sums* const (&rows)[kWindow], int used, int count, Sums& window) {
   const F d;
-  const int lanes = static_cast<int>(hn::Lanes(d));
+  const int lanes = LaneCount();
   for (int i = 0; i < count; i += lanes) {
-    auto n = hn::Load(d, rows[0]->count + i);
-    auto mean = hn::Load(d, rows[0]->mean + i), square = hn::Load(d, rows[0]->square + i);
+    auto n = Load(d, rows[0]->count + i);
+    auto mean = Load(d, rows[0]->mean + i), square = Load(d, rows[0]->square + i);
     for (int r = 1; r < used; ++r) {
-      n = hn::Add(n, hn::Load(d, rows[r]->count + i));
-      mean = hn::Add(mean, hn::Load(d, rows[r]->mean + i));
-      square = hn::Add(square, hn::Load(d, rows[r]->square + i));
+      n = Add(n, Load(d, rows[r]->count + i));
+      mean = Add(mean, Load(d, rows[r]->mean + i));
+      square = Add(square, Load(d, rows[r]->square + i));
     }
-    hn::Store(n, d, window.count + i);
-    hn::Store(mean, d, window.mean + i);
-    hn::Store(square, d, window.square + i);
+    Store(n, d, window.count + i);
+    Store(mean, d, window.mean + i);
+    Store(square, d, window.square + i);
   }
 }
 

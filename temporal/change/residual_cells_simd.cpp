@@ -1,38 +1,32 @@
 #include <algorithm>
-#include <limits>
 
-#include "frame/float_traps.h"
 #include "reproject/taps.h"
 #include "temporal/change/residual_cells.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "temporal/change/residual_cells_simd.cpp"
 #include <hwy/foreach_target.h>
-#include <hwy/highway.h>
+
+#include "frame/simd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace eigenlight::HWY_NAMESPACE {
 namespace {
-
-namespace hn = hwy::HWY_NAMESPACE;
 
 // Squared standard deviations of a block's mean that count as chance: 0.3 % of normal noise, some 2
 // % of path-traced noise with its heavy tail; and the pixels a block must have to be asked at all.
 constexpr double kBlockChance = 9.0;
 constexpr int kBlockPixels = 16;
 
-// Up to eight lanes: a row of a block, or as many cells of which a row of pixels has both columns
-// inside its padding.
-using B = hn::CappedTag<float, 8>;
-using VB = hn::Vec<B>;
-using MB = hn::Mask<B>;
+// Vectors are a row of a block, or as many cells: both columns of their pixels lie inside the
+// padding of a row.
 
 // v (1/s + 1/n) where `used`, else 0.
-VB ResidualVariance(MB used, VB variance, VB samples, VB age) {
-  const B d;
-  const VB one = hn::Set(d, 1.0f);
-  const VB s = hn::IfThenElse(used, samples, one), n = hn::IfThenElse(used, age, one);
-  return hn::IfThenElseZero(used, hn::Mul(variance, hn::Add(hn::Div(one, s), hn::Div(one, n))));
+VF8 ResidualVariance(MF8 used, VF8 variance, VF8 samples, VF8 age) {
+  const F8 d;
+  const VF8 one = Set(d, 1.0f);
+  const VF8 s = IfThenElse(used, samples, one), n = IfThenElse(used, age, one);
+  return IfThenElseZero(used, Mul(variance, Add(Div(one, s), Div(one, n))));
 }
 
 // Sums over the rows of some blocks side by side, for each column of pixels.
@@ -44,29 +38,27 @@ struct ColumnSums {
 
 // Adds a row of at most kColumns pixels.
 void AddRow(const CorrectionInputs& in, const Rect& row, ColumnSums& sums) {
-  const B d;
-  for (int x = row.x0; x < row.x1; x += static_cast<int>(hn::Lanes(d))) {
-    const auto load = [&](const Plane<float>& plane) {
-      return hn::LoadU(d, plane.row(row.y0) + x);
+  const F8 d;
+  for (int x = row.x0; x < row.x1; x += LaneCount(d)) {
+    const auto load = [&](const Plane<float>& plane) { return LoadU(d, plane.row(row.y0) + x); };
+    const auto inside = FirstLanes(row.x1 - x, d);
+    const VF8 innovation = load(in.innovation);
+    const MF8 used = AndNot(IsNaN(innovation), inside);
+    const auto add = [&](VF8 value, float* to) {
+      Store(Add(Load(d, to + x - row.x0), value), d, to + x - row.x0);
     };
-    const auto inside = hn::FirstN(d, static_cast<std::size_t>(row.x1 - x));
-    const VB innovation = load(in.innovation);
-    const MB used = hn::AndNot(hn::IsNaN(innovation), inside);
-    const auto add = [&](VB value, float* to) {
-      hn::Store(hn::Add(hn::Load(d, to + x - row.x0), value), d, to + x - row.x0);
-    };
-    add(hn::IfThenElseZero(used, innovation), sums.innovation);
+    add(IfThenElseZero(used, innovation), sums.innovation);
     add(ResidualVariance(used, load(in.variance), load(in.samples), load(in.age)), sums.noise);
-    add(hn::IfThenElseZero(used, hn::Set(d, 1.0f)), sums.count);
+    add(IfThenElseZero(used, Set(d, 1.0f)), sums.count);
   }
 }
 
 // The sum over the columns of one block.
 double SumBlock(const float* columns) {
-  const B d;
+  const F8 d;
   double sum = 0.0;
-  for (int i = 0; i < kResidualBlock; i += static_cast<int>(hn::Lanes(d))) {
-    sum += static_cast<double>(hn::GetLane(hn::SumOfLanes(d, hn::Load(d, columns + i))));
+  for (int i = 0; i < kResidualBlock; i += LaneCount(d)) {
+    sum += SumLanes(Load(d, columns + i), d);
   }
   return sum;
 }
@@ -102,7 +94,7 @@ struct Quad {
 struct Place {
   int column;     // first pixel column
   int rows[2];    // the same row twice where the image ends
-  MB inside_x;    // the right column is in the image
+  MF8 inside_x;   // the right column is in the image
   bool inside_y;  // and the lower row
 };
 
@@ -117,112 +109,109 @@ Quad<hn::Vec<D>> LoadQuad(D d, const Plane<T>& plane, const Place& place) {
 }
 
 void PlaceCellVector(const GBuffer& from, const Place& place, ResidualCells& cells, int x, int y) {
-  const B d;
-  const hn::RebindToSigned<B> di;
-  const hn::RebindToUnsigned<B> du;
-  const VB normal_cosine = hn::Set(d, cells.taps.normal_cosine);
+  const F8 d;
+  const hn::RebindToSigned<F8> di;
+  const hn::RebindToUnsigned<F8> du;
+  const VF8 normal_cosine = Set(d, cells.taps.normal_cosine);
   GBuffer& to = cells.guides.surface;
-  VB cosine[4] = {hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+  VF8 cosine[4] = {Zero(d), Zero(d), Zero(d), Zero(d)};
   for (std::size_t c = 0; c < 3; ++c) {
     const auto normal = LoadQuad(d, from.normal[c], place);
-    for (int q = 0; q < 4; ++q) cosine[q] = hn::MulAdd(normal.at[0], normal.at[q], cosine[q]);
-    hn::StoreU(normal.at[0], d, to.normal[c].row(y) + x);
+    for (int q = 0; q < 4; ++q) cosine[q] = MulAdd(normal.at[0], normal.at[q], cosine[q]);
+    StoreU(normal.at[0], d, to.normal[c].row(y) + x);
   }
-  hn::StoreU(LoadQuad(d, from.depth, place).at[0], d, to.depth.row(y) + x);
+  StoreU(LoadQuad(d, from.depth, place).at[0], d, to.depth.row(y) + x);
   const auto id = LoadQuad(du, from.id, place);
-  hn::StoreU(id.at[0], du, to.id.row(y) + x);
-  auto members = hn::Set(di, 1);
+  StoreU(id.at[0], du, to.id.row(y) + x);
+  auto members = Set(di, 1);
   for (int q = 1; q < 4; ++q) {
     if (q > 1 && !place.inside_y) break;
-    MB same =
-        hn::And(hn::RebindMask(d, hn::Eq(id.at[q], id.at[0])), hn::Ge(cosine[q], normal_cosine));
-    if ((q & 1) != 0) same = hn::And(same, place.inside_x);
-    members = hn::Or(members, hn::IfThenElseZero(hn::RebindMask(di, same), hn::Set(di, 1 << q)));
+    MF8 same = And(RebindMask(d, Eq(id.at[q], id.at[0])), Ge(cosine[q], normal_cosine));
+    if ((q & 1) != 0) same = And(same, place.inside_x);
+    members = Or(members, IfThenElseZero(RebindMask(di, same), Set(di, 1 << q)));
   }
-  const hn::Rebind<std::uint8_t, B> bytes;
-  hn::StoreU(hn::DemoteTo(bytes, members), bytes, cells.members.row(y) + x);
+  const hn::Rebind<std::uint8_t, F8> bytes;
+  StoreU(hn::DemoteTo(bytes, members), bytes, cells.members.row(y) + x);
 }
 
 // The members that are confirmed.
-Quad<MB> Confirmed(const CorrectionInputs& in, const Place& place, const ResidualCells& cells,
-                   int x, int y) {
-  const B d;
-  const hn::RebindToSigned<B> di;
-  const hn::Rebind<std::uint8_t, B> bytes;
-  const auto members = hn::PromoteTo(di, hn::LoadU(bytes, cells.members.row(y) + x));
+Quad<MF8> Confirmed(const CorrectionInputs& in, const Place& place, const ResidualCells& cells,
+                    int x, int y) {
+  const F8 d;
+  const hn::RebindToSigned<F8> di;
+  const hn::Rebind<std::uint8_t, F8> bytes;
+  const auto members = hn::PromoteTo(di, LoadU(bytes, cells.members.row(y) + x));
   const auto innovation = LoadQuad(d, in.innovation, place);
-  Quad<MB> confirmed;
+  Quad<MF8> confirmed;
   for (int q = 0; q < 4; ++q) {
-    const auto is_member = hn::TestBit(members, hn::Set(di, 1 << q));
-    confirmed.at[q] = hn::AndNot(hn::IsNaN(innovation.at[q]), hn::RebindMask(d, is_member));
+    const auto is_member = hn::TestBit(members, Set(di, 1 << q));
+    confirmed.at[q] = AndNot(IsNaN(innovation.at[q]), RebindMask(d, is_member));
   }
   return confirmed;
 }
 
 // The filter knows by its depth that a cell has nothing to give.
-void DropEmpty(VB count, GBuffer& surface, int x, int y) {
-  const B d;
-  const hn::RebindToUnsigned<B> du;
-  const MB empty = hn::Eq(count, hn::Zero(d));
-  if (hn::AllFalse(d, empty)) return;
+void DropEmpty(VF8 count, GBuffer& surface, int x, int y) {
+  const F8 d;
+  const hn::RebindToUnsigned<F8> du;
+  const MF8 empty = Eq(count, Zero(d));
+  if (AllFalse(d, empty)) return;
   float* const depth = surface.depth.row(y) + x;
-  const VB infinite = hn::Set(d, std::numeric_limits<float>::infinity());
-  hn::StoreU(hn::IfThenElse(empty, infinite, hn::LoadU(d, depth)), d, depth);
+  const VF8 infinite = Set(d, std::numeric_limits<float>::infinity());
+  StoreU(IfThenElse(empty, infinite, LoadU(d, depth)), d, depth);
   std::uint32_t* const id = surface.id.row(y) + x;
-  hn::StoreU(hn::IfThenZeroElse(hn::RebindMask(du, empty), hn::LoadU(du, id)), du, id);
+  StoreU(IfThenZeroElse(RebindMask(du, empty), LoadU(du, id)), du, id);
 }
 
 void LoadCellVector(const CorrectionInputs& in, const Place& place, ResidualCells& cells, int x,
                     int y) {
-  const B d;
-  const Quad<MB> member = Confirmed(in, place, cells, x, y);
-  VB count = hn::Zero(d), noise = hn::Zero(d);
+  const F8 d;
+  const Quad<MF8> member = Confirmed(in, place, cells, x, y);
+  VF8 count = Zero(d), noise = Zero(d);
   const auto variance = LoadQuad(d, in.variance, place);
   const auto samples = LoadQuad(d, in.samples, place);
   const auto age = LoadQuad(d, in.age, place);
   for (int q = 0; q < 4; ++q) {
-    count = hn::Add(count, hn::IfThenElseZero(member.at[q], hn::Set(d, 1.0f)));
-    noise =
-        hn::Add(noise, ResidualVariance(member.at[q], variance.at[q], samples.at[q], age.at[q]));
+    count = Add(count, IfThenElseZero(member.at[q], Set(d, 1.0f)));
+    noise = Add(noise, ResidualVariance(member.at[q], variance.at[q], samples.at[q], age.at[q]));
   }
-  const VB share = hn::Div(hn::Set(d, 1.0f), hn::Max(count, hn::Set(d, 1.0f)));
+  const VF8 share = Div(Set(d, 1.0f), Max(count, Set(d, 1.0f)));
   for (std::size_t c = 0; c < 3; ++c) {
     const auto residual = LoadQuad(d, in.residual[c], place);
-    VB sum = hn::Zero(d);
+    VF8 sum = Zero(d);
     for (int q = 0; q < 4; ++q) {
-      sum = hn::Add(sum, hn::IfThenElseZero(member.at[q], residual.at[q]));
+      sum = Add(sum, IfThenElseZero(member.at[q], residual.at[q]));
     }
-    hn::StoreU(hn::Mul(sum, share), d, cells.mean[c].row(y) + x);
+    StoreU(Mul(sum, share), d, cells.mean[c].row(y) + x);
   }
-  hn::StoreU(hn::Mul(noise, hn::Mul(share, share)), d, cells.noise.row(y) + x);
-  hn::StoreU(count, d, cells.count.row(y) + x);
+  StoreU(Mul(noise, Mul(share, share)), d, cells.noise.row(y) + x);
+  StoreU(count, d, cells.count.row(y) + x);
   DropEmpty(count, cells.guides.surface, x, y);
 }
 
 // Calls visit(place, x, y) for each vector of the cells of `tile`.
 template <typename Visit>
-void ForEachVector(const Rect& tile, Extent pixels, const Visit& visit) {
-  const B d;
+void ForEachCells(const Rect& tile, Extent pixels, const Visit& visit) {
+  const F8 d;
   for (int y = tile.y0; y < tile.y1; ++y) {
     const bool inside_y = 2 * y + 1 < pixels.height;
-    for (int x = tile.x0; x < tile.x1; x += static_cast<int>(hn::Lanes(d))) {
+    for (int x = tile.x0; x < tile.x1; x += LaneCount(d)) {
       // Of the cells from x on, those with a right column in the image.
-      const auto whole = static_cast<std::size_t>(std::max(pixels.width / 2 - x, 0));
-      visit(Place{2 * x, {2 * y, inside_y ? 2 * y + 1 : 2 * y}, hn::FirstN(d, whole), inside_y}, x,
-            y);
+      const MF8 whole = FirstLanes(std::max(pixels.width / 2 - x, 0), d);
+      visit(Place{2 * x, {2 * y, inside_y ? 2 * y + 1 : 2 * y}, whole, inside_y}, x, y);
     }
   }
 }
 
 void PlaceCells(const GBuffer& surface, const Rect& tile, ResidualCells& cells) {
-  ForEachVector(tile, surface.depth.extent(), [&](const Place& place, int x, int y) {
+  ForEachCells(tile, surface.depth.extent(), [&](const Place& place, int x, int y) {
     PlaceCellVector(surface, place, cells, x, y);
   });
 }
 
 void LoadCells(const CorrectionInputs& in, const Rect& tile, ResidualCells& cells) {
-  ForEachVector(tile, in.guides.extent(),
-                [&](const Place& place, int x, int y) { LoadCellVector(in, place, cells, x, y); });
+  ForEachCells(tile, in.guides.extent(),
+               [&](const Place& place, int x, int y) { LoadCellVector(in, place, cells, x, y); });
 }
 
 }  // namespace

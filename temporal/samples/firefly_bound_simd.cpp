@@ -1,59 +1,46 @@
-#include "frame/float_traps.h"
 #include "temporal/samples/firefly_bound.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "temporal/samples/firefly_bound_simd.cpp"
 #include <hwy/foreach_target.h>
-#include <hwy/highway.h>
+
+#include "frame/simd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace eigenlight::HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
-// Up to eight lanes: a row of a block.
-using D = hn::CappedTag<float, 8>;
-using V = hn::Vec<D>;
-
-V Luminance(V r, V g, V b) {
-  const D d;
-  return hn::MulAdd(hn::Set(d, 0.2126f), r,
-                    hn::MulAdd(hn::Set(d, 0.7152f), g, hn::Mul(hn::Set(d, 0.0722f), b)));
-}
-
 // Squared innovation that a confirmed pixel is expected to have.
-V Expected(hn::Mask<D> confirmed, V variance, V samples, V age, V expected) {
-  const D d;
-  const V one = hn::Set(d, 1.0f);
-  const V s = hn::IfThenElse(confirmed, samples, one), n = hn::IfThenElse(confirmed, age, one);
-  const V light = hn::Mul(hn::Set(d, 0.1f), expected);
-  return hn::MulAdd(light, light, hn::Mul(variance, hn::Add(hn::Div(one, s), hn::Div(one, n))));
+VF8 Expected(MF8 confirmed, VF8 variance, VF8 samples, VF8 age, VF8 expected) {
+  const F8 d;
+  const VF8 one = Set(d, 1.0f);
+  const VF8 s = IfThenElse(confirmed, samples, one), n = IfThenElse(confirmed, age, one);
+  const VF8 light = Mul(Set(d, 0.1f), expected);
+  return MulAdd(light, light, Mul(variance, Add(Div(one, s), Div(one, n))));
 }
 
 FireflyBlock CountFireflies(const FireflyInputs& in, float deviations, const FireflyOutputs& out,
                             const Rect& block) {
-  const D d;
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  const V zero = hn::Zero(d), square = hn::Set(d, deviations * deviations);
+  const F8 d;  // a vector is a row of a block
+  const VF8 zero = Zero(d), square = Set(d, deviations * deviations);
   FireflyBlock counts;
-  for (int y = block.y0; y < block.y1; ++y) {
-    for (int x = block.x0; x < block.x1; x += lanes) {
-      const auto load = [&](const Plane<float>& plane) { return hn::LoadU(d, plane.row(y) + x); };
-      const auto inside = hn::FirstN(d, static_cast<std::size_t>(block.x1 - x));
-      const V r = load(out.innovation), prediction = load(in.expected);
-      const V samples = hn::IfThenElseZero(inside, load(in.samples));
-      const auto confirmed = hn::AndNot(hn::IsNaN(r), inside), usable = hn::Gt(samples, zero);
-      const V expected = Expected(confirmed, load(in.variance), samples, load(in.age), prediction);
-      const auto outlier = hn::And(confirmed, hn::Gt(hn::Mul(r, r), hn::Mul(square, expected)));
-      const V off = Luminance(load(out.residual[0]), load(out.residual[1]), load(out.residual[2]));
-      const V root = hn::Sqrt(hn::IfThenElseZero(usable, hn::Abs(hn::Add(prediction, off))));
-      counts.confirmed += static_cast<int>(hn::CountTrue(d, confirmed));
-      counts.outliers += static_cast<int>(hn::CountTrue(d, outlier));
-      counts.usable += static_cast<int>(hn::CountTrue(d, usable));
-      counts.fresh += static_cast<int>(hn::CountTrue(d, hn::AndNot(confirmed, usable)));
-      counts.root += static_cast<double>(hn::GetLane(hn::SumOfLanes(d, root)));
-    }
-  }
+  const auto count = [&](int x, int y) {
+    const auto load = [&](const Plane<float>& plane) { return Load(plane, x, y, d); };
+    const MF8 inside = FirstLanes(block.x1 - x, d);
+    const VF8 r = load(out.innovation), prediction = load(in.expected);
+    const VF8 samples = IfThenElseZero(inside, load(in.samples));
+    const MF8 confirmed = AndNot(IsNaN(r), inside), usable = Gt(samples, zero);
+    const VF8 expected = Expected(confirmed, load(in.variance), samples, load(in.age), prediction);
+    const MF8 outlier = And(confirmed, Gt(Mul(r, r), Mul(square, expected)));
+    const VF8 off = Luminance(Load(out.residual, x, y, d));
+    const VF8 root = Sqrt(IfThenElseZero(usable, Abs(Add(prediction, off))));
+    counts.confirmed += CountLanes(confirmed, d);
+    counts.outliers += CountLanes(outlier, d);
+    counts.usable += CountLanes(usable, d);
+    counts.fresh += CountLanes(AndNot(confirmed, usable), d);
+    counts.root += SumLanes(root, d);
+  };
+  ForEachVector(block, count, d);
   return counts;
 }
 

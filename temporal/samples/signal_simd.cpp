@@ -1,9 +1,6 @@
 #include <algorithm>
 #include <array>
-#include <limits>
 
-#include "frame/float_traps.h"
-#include "frame/prefetch.h"
 #include "reproject/taps.h"
 #include "temporal/bases/tile_sums.h"
 #include "temporal/samples/firefly_bound.h"
@@ -12,92 +9,65 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "temporal/samples/signal_simd.cpp"
 #include <hwy/foreach_target.h>
-#include <hwy/highway.h>
+
+#include "frame/simd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace eigenlight::HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
-using F = hn::ScalableTag<float>;
-using VF = hn::Vec<F>;
+// Samples granted to a vector of pixels beyond the regular ones.
+VF LoadExtra(const SignalInputs& in, int x, int y) {
+  return in.extra == nullptr ? Zero() : ConvertTo(F(), LoadBytes(*in.extra, x, y));
+}
+
+// The mean of `regular` and `extra` samples.
+VF3 LoadMean(const SignalInputs& in, VF regular, VF extra, int x, int y) {
+  const MF granted = Gt(extra, Zero());
+  const VF scale = Div(Set(1), Add(regular, extra));
+  VF3 light;
+  for (int c = 0; c < 3; ++c) {
+    VF sum = Mul(regular, LoadAndPrefetch(in.raw[c], x, y));
+    if (in.extra_mean != nullptr) {
+      const VF more = Mul(extra, LoadAndPrefetch((*in.extra_mean)[c], x, y));
+      sum = Add(sum, IfThenElseZero(granted, more));
+    }
+    light[c] = Mul(sum, scale);
+  }
+  return light;
+}
 
 PixelCounts MergeSamples(const SignalInputs& in, const Rect& tile, const SignalOutputs& out) {
-  const F d;
-  const hn::RebindToUnsigned<F> du;
-  const hn::Rebind<std::uint8_t, F> bytes;
-  const hn::RebindToSigned<F> di;
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  const VF regular = hn::Set(d, static_cast<float>(std::max(in.frame.spp, 1)));
-  const VF zero = hn::Zero(d), per_regular = hn::Div(hn::Set(d, 1.0f), regular);
-  const VF nan = hn::Set(d, std::numeric_limits<float>::quiet_NaN());
+  const VF regular = Set(std::max(in.frame.spp, 1)), per_regular = Div(Set(1), regular);
   PixelCounts counts;
-  for (int y = tile.y0; y < tile.y1; ++y) {
-    for (int x = tile.x0; x < tile.x1; x += lanes) {
-      VF extra = zero;
-      if (in.extra != nullptr) {
-        extra = hn::ConvertTo(d, hn::PromoteTo(di, hn::LoadU(bytes, in.extra->row(y) + x)));
-      }
-      const auto granted = hn::Gt(extra, zero);
-      const VF samples = hn::Add(regular, extra);
-      const VF scale = hn::Div(hn::Set(d, 1.0f), samples);
-      VF light[3], size = zero;
-      for (std::size_t c = 0; c < 3; ++c) {
-        prefetch_below(in.raw[c], x, y);
-        prefetch_below(out.light[c], x, y);
-        light[c] = hn::Mul(regular, hn::LoadU(d, in.raw[c].row(y) + x));
-        if (in.extra_mean != nullptr) {
-          prefetch_below((*in.extra_mean)[c], x, y);
-          const VF more = hn::Mul(extra, hn::LoadU(d, (*in.extra_mean)[c].row(y) + x));
-          light[c] = hn::Add(light[c], hn::IfThenElseZero(granted, more));
-        }
-        light[c] = hn::Mul(light[c], scale);
-        size = hn::Add(size, hn::Abs(light[c]));
-      }
-      prefetch_below(in.frame.surface.id, x, y);
-      prefetch_below(in.age, x, y);
-      prefetch_below(out.samples, x, y);
-      const auto id = hn::LoadU(du, in.frame.surface.id.row(y) + x);
-      const auto inside = hn::FirstN(d, static_cast<std::size_t>(tile.x1 - x));
-      const auto surface = hn::And(inside, hn::RebindMask(d, hn::Ne(id, hn::Zero(du))));
-      // False of NaN.
-      const auto usable = hn::And(surface, hn::Le(size, hn::Set(d, kLargestLight)));
-      const auto fresh = hn::And(surface, hn::Eq(hn::LoadU(d, in.age.row(y) + x), zero));
-      for (std::size_t c = 0; c < 3; ++c) {
-        hn::StoreU(hn::IfThenElse(usable, light[c], nan), d, out.light[c].row(y) + x);
-      }
-      hn::StoreU(hn::IfThenElseZero(usable, hn::Mul(samples, per_regular)), d,
-                 out.samples.row(y) + x);
-      counts.fresh += static_cast<std::int64_t>(hn::CountTrue(d, fresh));
-      counts.non_finite += static_cast<std::int64_t>(hn::CountTrue(d, hn::AndNot(usable, surface)));
+  ForEachVector(tile, [&](int x, int y) {
+    const VF extra = LoadExtra(in, x, y);
+    const VF3 light = LoadMean(in, regular, extra, x, y);
+    const VF size = Add(Add(Abs(light[0]), Abs(light[1])), Abs(light[2]));
+    prefetch_below(in.frame.surface.id, x, y);
+    const MF surface = And(FirstLanes(tile.x1 - x), HasSurface(in.frame.surface.id, x, y));
+    const MF usable = And(surface, Le(size, Set(kLargestLight)));  // false for NaN
+    const MF fresh = And(surface, Eq(LoadAndPrefetch(in.age, x, y), Zero()));
+    for (int c = 0; c < 3; ++c) {
+      StoreAndPrefetch(IfThenElse(usable, light[c], NaN()), out.light[c], x, y);
     }
-  }
+    const VF samples = Mul(Add(regular, extra), per_regular);
+    StoreAndPrefetch(IfThenElseZero(usable, samples), out.samples, x, y);
+    counts.fresh += CountLanes(fresh);
+    counts.non_finite += CountLanes(AndNot(usable, surface));
+  });
   return counts;
 }
 
 void EstimateVariance(const EstimateInputs& in, const Rect& tile, const EstimateOutputs& out) {
-  const F d;
-  const hn::RebindToUnsigned<F> du;
-  const hn::Rebind<std::uint8_t, F> bytes;
-  const hn::RebindToSigned<F> di;
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-  for (int y = tile.y0; y < tile.y1; ++y) {
-    for (int x = tile.x0; x < tile.x1; x += lanes) {
-      prefetch_below(in.id, x, y);
-      prefetch_below(out.variance, x, y);
-      const VF age = hn::LoadU(d, in.age.row(y) + x);
-      const auto known = hn::Gt(age, zero);
-      const VF variance =
-          hn::Div(hn::LoadU(d, in.variance.row(y) + x), hn::IfThenElse(known, age, one));
-      hn::StoreU(hn::IfThenElseZero(known, variance), d, out.variance.row(y) + x);
-      const auto id = hn::LoadU(du, in.id.row(y) + x);
-      const auto young =
-          hn::And(hn::RebindMask(d, hn::Ne(id, hn::Zero(du))), hn::Lt(age, hn::Set(d, in.young)));
-      const auto flag = hn::IfThenElseZero(hn::RebindMask(di, young), hn::Set(di, 1));
-      hn::StoreU(hn::DemoteTo(bytes, flag), bytes, out.young.row(y) + x);
-    }
-  }
+  ForEachVector(tile, [&](int x, int y) {
+    const VF age = Load(in.age, x, y);
+    const MF known = Gt(age, Zero());
+    const VF variance = Div(Load(in.variance, x, y), IfThenElse(known, age, Set(1)));
+    StoreAndPrefetch(IfThenElseZero(known, variance), out.variance, x, y);
+    prefetch_below(in.id, x, y);
+    StoreFlags(And(HasSurface(in.id, x, y), Lt(age, Set(in.young))), out.young, x, y);
+  });
 }
 
 constexpr int kRadius = 3;
@@ -119,8 +89,8 @@ void SumRow(const FreshInputs& in, const Rect& tile, int y, Sums& sums) {
   const float* u[3] = {in.raw[0].at(first, y), in.raw[1].at(first, y), in.raw[2].at(first, y)};
   for (int i = 0; i < last - first; ++i) {
     const bool usable = used[i] > 0.0f;
-    const double l = 0.2126 * static_cast<double>(u[0][i]) + 0.7152 * static_cast<double>(u[1][i]) +
-                     0.0722 * static_cast<double>(u[2][i]);
+    const double l = luminance(static_cast<double>(u[0][i]), static_cast<double>(u[1][i]),
+                               static_cast<double>(u[2][i]));
     const double most = static_cast<double>(brightness[(first + i) / kFireflyBlock]);
     const double below = l < most ? l : most, bounded = below > -most ? below : -most;
     count[shift + i] = usable ? 1.0 : 0.0;
