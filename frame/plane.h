@@ -15,51 +15,29 @@
 #include <utility>
 
 #include "frame/check.h"
+#include "frame/extent.h"
 
 namespace eigenlight {
-
-/// Size of an image in pixels. Valid images have both sides in [1, 65536].
-struct Extent {
-  int width = 0;
-  int height = 0;
-
-  [[nodiscard]] std::size_t pixels() const {
-    return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  }
-  [[nodiscard]] bool contains(int x, int y) const {
-    return x >= 0 && y >= 0 && x < width && y < height;
-  }
-  friend bool operator==(const Extent&, const Extent&) = default;
-};
-
-inline constexpr int kMaxSide = 65536;
-
-/// Throws std::invalid_argument unless both sides of `extent` are in [1, kMaxSide].
-inline void check_extent(Extent extent) {
-  EL_CHECK(extent.width >= 1 && extent.height >= 1 && extent.width <= kMaxSide &&
-               extent.height <= kMaxSide,
-           "image size {}x{}: each side must be in [1, {}]", extent.width, extent.height, kMaxSide);
-}
 
 namespace detail {
 
 inline constexpr std::size_t kLine = 64;  // bytes
 
-// A first-level cache finds lines by their address modulo 4 kB, in 8 ways or so: were the rows of a
-// plane, and those of the other planes, multiples of that apart, a kernel that reads more than 8 of
-// them would find none of its lines again.
+// A first-level cache places a line by its address modulo 4 kB and keeps some 8 lines per place. If
+// rows and planes lay multiples of 4 kB apart, a kernel that reads more than 8 of them would
+// evict its own lines.
 inline constexpr std::size_t kAlias = 4096;
 
-/// Lines from row to row: odd, where rows are long enough for it to cost less than 1 in 16.
+/// Lines from row to row. Long rows have an odd number: that costs less than 1 line in 16.
 [[nodiscard]] constexpr std::size_t apart(std::size_t lines) {
   return lines < 16 ? lines : lines | 1;
 }
 
-/// Lines that may be read before the first value and behind the last: a vector that starts up to
-/// its own length beside a row, and its neighbor one pixel on.
+/// Lines that may be read before the first value and after the last one: a vector may start up to
+/// its own length beside a row, and its neighbor one pixel further.
 inline constexpr std::size_t kMargin = 2;
 
-/// Lines before the first of a large plane: planes that are made one after another differ.
+/// Lines before the first one of a large plane. The number differs from plane to plane.
 [[nodiscard]] inline std::size_t next_start() {
   static std::atomic<unsigned> made = 0;
   return made.fetch_add(5, std::memory_order_relaxed) % (kAlias / kLine);
@@ -218,8 +196,8 @@ class Plane {
   int channels_ = 1;
   std::size_t stride_ = 0, capacity_ = 0;  // values
   std::unique_ptr<T[], Free> data_;
-  // Where constant rows start: those of a view lie in two blocks of memory. Anything longer than
-  // one load here keeps kernels from being inlined.
+  // Where constant rows start: those of a view lie in two blocks of memory. row() must stay a
+  // single load, or kernels are not inlined.
   std::unique_ptr<const T*[]> rows_;
   bool is_view_ = false;
 };
@@ -238,7 +216,7 @@ Plane<T> Plane<T>::view(const T* first, Extent extent, std::ptrdiff_t row_bytes)
   const auto copy_row = [&](int from, int to, Plane& out) {
     std::copy_n(first + stride * from, extent.width, out.row(to));
   };
-  // What may be read behind a row: what pads it to whole lines, and the margin.
+  // Kernels may read the padding of a row and the margin behind it.
   if (apart < static_cast<std::ptrdiff_t>((detail::kMargin + 1) * kLine)) {
     Plane copy(extent);
     for (int y = 0; y < extent.height; ++y) copy_row(y, y, copy);

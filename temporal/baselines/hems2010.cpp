@@ -6,7 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include "temporal/baselines/point_taps.h"
 #include "temporal/stage_clock.h"
 
 namespace eigenlight {
@@ -135,6 +134,25 @@ void Hems2010::gather(const Tile& tile, PixelCounts& counts) {
   }
 }
 
+// What a past frame shows of a point through its taps.
+Hems2010::Seen Hems2010::look(const PastFrame& past, const PointTaps& taps) {
+  Seen seen;
+  float strongest = 0.0f;
+  for (std::size_t t = 0; t < 4; ++t) {
+    const float weight = taps.weight[t];
+    if (!(weight > 0.0f)) continue;
+    const glm::ivec2 q = taps.tap(t);
+    seen.light += weight * past.known(q.x, q.y) * at(past.light, q);
+    seen.known += weight * past.known(q.x, q.y);
+    seen.motion += weight * glm::vec2(past.motion[0](q.x, q.y), past.motion[1](q.x, q.y));
+    seen.previous_depth += weight * past.previous_depth(q.x, q.y);
+    if (weight <= strongest) continue;
+    strongest = weight;
+    seen.normal = at(past.surface.normal, q);
+  }
+  return seen;
+}
+
 bool Hems2010::gather_pixel(glm::ivec2 p) {
   const glm::vec3 own = at(smooth_, p);
   const bool known = known_(p.x, p.y) > 0.0f;
@@ -144,30 +162,15 @@ bool Hems2010::gather_pixel(glm::ivec2 p) {
       frame_.surface.id(p.x, p.y), at(frame_.surface.normal, p),
       glm::vec2(p) + glm::vec2(frame_.motion[0](p.x, p.y), frame_.motion[1](p.x, p.y)),
       frame_.previous_depth(p.x, p.y)};
-  bool seen = false;
+  bool found = false;
   for (const PastFrame& past : past_) {
     const PointTaps taps = point_taps({past.camera, past.surface}, options_.taps, point);
     if (!taps.found()) break;
-    seen = true;
-    glm::vec3 light(0.0f);
-    glm::vec2 motion(0.0f);
-    float share = 0.0f, strongest = 0.0f;
-    point.depth = 0.0f;
-    for (std::size_t t = 0; t < 4; ++t) {
-      const float weight = taps.weight[t];
-      if (!(weight > 0.0f)) continue;
-      const glm::ivec2 q = taps.tap(t);
-      light += weight * past.known(q.x, q.y) * at(past.light, q);
-      share += weight * past.known(q.x, q.y);
-      motion += weight * glm::vec2(past.motion[0](q.x, q.y), past.motion[1](q.x, q.y));
-      point.depth += weight * past.previous_depth(q.x, q.y);
-      if (weight <= strongest) continue;
-      strongest = weight;
-      point.normal = at(past.surface.normal, q);
-    }
-    point.pixel += motion;
-    if (!(share > 0.0f)) continue;
-    light /= share;
+    found = true;
+    const Seen seen = look(past, taps);
+    point = {point.id, seen.normal, point.pixel + seen.motion, seen.previous_depth};
+    if (!(seen.known > 0.0f)) continue;
+    const glm::vec3 light = seen.light / seen.known;
     const float apart = known ? difference(light, own) : 0.0f;
     const float weight = std::exp(-apart / (2.0f * options_.color * options_.color));
     sum += weight * light;
@@ -175,10 +178,10 @@ bool Hems2010::gather_pixel(glm::ivec2 p) {
     squares += weight * weight;
   }
   if (weights > 0.0f) {
-    for (int c = 0; c < 3; ++c) output_[static_cast<std::size_t>(c)](p.x, p.y) = sum[c] / weights;
+    for (int c = 0; c < 3; ++c) output_[c](p.x, p.y) = sum[c] / weights;
     age_(p.x, p.y) = weights * weights / squares;
   }
-  return seen;
+  return found;
 }
 
 // Puts this frame before the others, in the planes of the one that leaves.

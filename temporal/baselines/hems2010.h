@@ -5,6 +5,7 @@
 
 #include "reproject/taps.h"
 #include "spatial/rivals/cross_bilateral.h"
+#include "temporal/baselines/point_taps.h"
 #include "temporal/samples/pixel_counts.h"
 
 namespace eigenlight {
@@ -54,10 +55,19 @@ class Hems2010 final : public Denoiser {
     Planes<3> light;     // s
     Plane<float> known;  // 1 where there is such, else 0
   };
+  // A point of a past frame, weighted by its taps.
+  struct Seen {
+    glm::vec3 light{0.0f};  // times known
+    float known = 0.0f;
+    glm::vec3 normal{0.0f};  // of the tap that weighs most
+    glm::vec2 motion{0.0f};
+    float previous_depth = 0.0f;
+  };
 
   void take_light(const Tile& tile, PixelCounts& counts);
   void smooth();
   void gather(const Tile& tile, PixelCounts& counts);
+  [[nodiscard]] static Seen look(const PastFrame& past, const PointTaps& taps);
   [[nodiscard]] bool gather_pixel(glm::ivec2 p);  // whether any past frame shows the point
   void keep();
 

@@ -29,6 +29,38 @@ TileSums window_sums(std::span<const TileSums> sums, const TileGrid& grid, int i
   return total;
 }
 
+// The bases of a window that have energy.
+struct Used {
+  std::array<int, kMaxBases> basis{};
+  int count = 0;
+};
+
+Used find_used(const TileSums& sums, int bases) {
+  Used used;
+  for (int k = 0; k < bases; ++k) {
+    // Below 1e-10 of the first basis' energy a basis is float noise of the warp.
+    if (sums.gram[static_cast<std::size_t>(packed(k, k))] > 1e-10 * sums.gram[0]) {
+      used.basis[static_cast<std::size_t>(used.count++)] = k;
+    }
+  }
+  return used;
+}
+
+SmallMatrix regular_gram(const TileSums& sums, const Used& used) {
+  SmallMatrix gram(used.count, used.count);
+  for (int a = 0; a < used.count; ++a) {
+    const int j = used.basis[static_cast<std::size_t>(a)];
+    for (int b = 0; b <= a; ++b) {
+      const int i = used.basis[static_cast<std::size_t>(b)];
+      gram(a, b) = gram(b, a) = sums.gram[static_cast<std::size_t>(packed(i, j))];
+    }
+    // A ridge of 1e-6 of its own energy keeps nearly parallel bases apart (condition <= 1e6). Not
+    // on the first: a light that falls to 1e-6 would be taken for 2e-6.
+    if (a > 0) gram(a, a) *= 1.0 + 1e-6;
+  }
+  return gram;
+}
+
 // delta and its variance for the bases that have energy; zeros for the others.
 struct Solution {
   SmallVector delta, variance;
@@ -36,42 +68,23 @@ struct Solution {
 
 Solution solve(const TileSums& sums, int bases) {
   Solution out{SmallVector::Zero(bases), SmallVector::Zero(bases)};
-  std::array<int, kMaxBases> used{};
-  int rank = 0;
-  const double first = sums.gram[0];
-  for (int k = 0; k < bases; ++k) {
-    // Below 1e-10 of the first basis' energy a basis is float noise of the warp.
-    if (sums.gram[static_cast<std::size_t>(packed(k, k))] > 1e-10 * first) {
-      used[static_cast<std::size_t>(rank++)] = k;
-    }
-  }
-  if (rank == 0 || !(first > 0.0)) return out;
+  const Used used = find_used(sums, bases);
+  const int rank = used.count;
+  if (rank == 0 || !(sums.gram[0] > 0.0)) return out;
 
-  SmallMatrix gram(rank, rank);
-  SmallVector right(rank);
-  for (int a = 0; a < rank; ++a) {
-    const int j = used[static_cast<std::size_t>(a)];
-    right[a] = sums.innovation[static_cast<std::size_t>(j)];
-    for (int b = 0; b <= a; ++b) {
-      const int i = used[static_cast<std::size_t>(b)];
-      gram(a, b) = gram(b, a) = sums.gram[static_cast<std::size_t>(packed(i, j))];
-    }
-    // A ridge of 1e-6 of its own energy keeps nearly parallel bases apart (condition <= 1e6). Not
-    // on the first: a light that falls to 1e-6 would be taken for 2e-6.
-    if (a > 0) gram(a, a) *= 1.0 + 1e-6;
-  }
-  const SmallMatrix inverse = gram.ldlt().solve(SmallMatrix::Identity(rank, rank));
+  const auto basis = [&](int a) { return used.basis[static_cast<std::size_t>(a)]; };
+  SmallVector right(rank), scatter(rank);
+  for (int a = 0; a < rank; ++a) right[a] = sums.innovation[static_cast<std::size_t>(basis(a))];
+  const SmallMatrix identity = SmallMatrix::Identity(rank, rank);
+  const SmallMatrix inverse = regular_gram(sums, used).ldlt().solve(identity);
   const SmallVector delta = inverse * right;
-  SmallVector scatter(rank);
   for (int a = 0; a < rank; ++a) {
-    const int k = used[static_cast<std::size_t>(a)];
-    scatter[a] = sums.innovation_variance(static_cast<std::size_t>(k), delta[0]);
+    scatter[a] = sums.innovation_variance(static_cast<std::size_t>(basis(a)), delta[0]);
   }
   for (int a = 0; a < rank; ++a) {
-    const int k = used[static_cast<std::size_t>(a)];
-    out.delta[k] = delta[a];
+    out.delta[basis(a)] = delta[a];
     for (int b = 0; b < rank; ++b) {
-      out.variance[k] += inverse(a, b) * inverse(a, b) * scatter[b];
+      out.variance[basis(a)] += inverse(a, b) * inverse(a, b) * scatter[b];
     }
   }
   return out;

@@ -2,8 +2,8 @@
 """Checks the shape of the code: check.py ROOT prints each fault as file:line: what, and exits 1.
 
 Folders include downwards only, third-party libraries stay behind the files that are meant to
-include them, files stay short, headers have #pragma once, no flag that changes floating point, and
-every source is formatted as .clang-format says.
+include them, files and functions stay short, headers have #pragma once, no flag that changes
+floating point, and every source is formatted as .clang-format says.
 """
 
 import collections
@@ -65,7 +65,8 @@ THIRD_PARTY = [  # (includes, files that may have them)
     (r"xxhash", ["sequences/*"]),
 ]
 
-MAX_LINES = 400
+MAX_LINES = 300
+MAX_FUNCTION = 40  # lines, from the name to the closing brace
 MAX_SOURCES = 40  # that stand directly in one folder
 INCLUDE = re.compile(r'^\s*#\s*include\s+(?:"([^"]+)"|<([^>]+)>)')
 BANNED_FLAG = re.compile(r"-ffast-math|-Ofast|-march|-funsafe-math")
@@ -129,9 +130,39 @@ def length_faults(name, lines):
         yield f"{name}:{len(lines)}: longer than {MAX_LINES} lines"
 
 
+def indentation(line):
+    return len(line) - len(line.lstrip())
+
+
+def functions(lines):
+    """(first, last) line number from 0 of each function, told by indentation as clang-format sets
+    it: the last is a lone brace, the first the nearest line before that stands no further right.
+    Classes, tables and lambdas end with "};" and so are none."""
+    last = len(lines) - 1
+    while last > 0:
+        first = last - 1
+        if lines[last].strip() == "}":
+            edge = indentation(lines[last])
+            while first > 0 and (not lines[first].strip() or lines[first].startswith("#")
+                                 or indentation(lines[first]) > edge):
+                first -= 1
+            yield first, last
+            first -= 1
+        last = first
+
+
+def function_faults(name, lines):
+    for first, last in functions(lines):
+        count = last - first + 1
+        if count > MAX_FUNCTION:
+            title = lines[first].strip().removesuffix(" {")
+            yield f"{name}:{first + 1}: {count} lines in one function, at most {MAX_FUNCTION}: {title}"
+
+
 def header_faults(name, lines):
-    # Highway has headers named -inl.h compiled once for each instruction set.
-    if name.endswith(".h") and not name.endswith("-inl.h") and "#pragma once" not in (line.strip() for line in lines):
+    # Headers named -inl.h are compiled once for each instruction set, as Highway's own are.
+    once = name.endswith("-inl.h") or "#pragma once" in (line.strip() for line in lines)
+    if name.endswith(".h") and not once:
         yield f"{name}:1: no #pragma once"
 
 
@@ -196,6 +227,7 @@ def faults(root):
         sources[name] = lines
         yield from include_faults(name, lines)
         yield from length_faults(name, lines)
+        yield from function_faults(name, lines)
         yield from header_faults(name, lines)
     if not names:
         yield f"{root}: no source file found"

@@ -50,7 +50,7 @@ class CheckTest(unittest.TestCase):
             ("render/x.cpp", "#include <nlohmann/json.hpp>\n", "belongs in sequences/*"),
             ("spatial/x.cpp", "#include <hwy/highway.h>\n", "belongs in *_simd.cpp, *-inl.h only"),
             ("sequences/x.cpp", "#include <OpenImageIO/imageio.h>\n", "belongs in"),
-            ("frame/x.cpp", "\n" * 401, "longer than 400 lines"),
+            ("frame/x.cpp", "\n" * 301, "longer than 300 lines"),
             ("frame/x.h", "\n", "no #pragma once"),
             ("spatial/sharpen_simd.cpp", '#include "spatial/sharpen.h"\nHWY_EXPORT(Sharpen);\n',
              "no EL_KERNEL_TEST in tests/spatial/ includes its header"),
@@ -61,6 +61,30 @@ class CheckTest(unittest.TestCase):
                 found = self.faults_with(name, text)
                 self.assertEqual(len(found), 1, found)
                 self.assertIn(message, found[0])
+
+    def test_a_long_function_is_a_fault(self):
+        def body(count, indent="  "):
+            return "".join(f"{indent}int v{i} = {i};\n" for i in range(count))
+        long_body = body(check.MAX_FUNCTION - 1)
+        cases = [
+            ("frame/x.cpp", "void F(int a) {\n" + long_body + "}\n", "frame/x.cpp:1: 41 lines"),
+            ("frame/x.cpp", "int A::f(int a,\n         int b) {\n" + body(39) + "}\n",
+             "frame/x.cpp:1: 42 lines in one function, at most 40: int A::f(int a,"),
+            ("frame/x.h", "#pragma once\nclass A {\n public:\n  void f() {\n" + body(39, "    ")
+             + "  }\n};\n", "frame/x.h:4: 41 lines"),
+            ("tests/frame/x.cpp", "TEST(A, B) {\n#if X\n" + body(38) + "#endif\n}\n",
+             "tests/frame/x.cpp:1: 42 lines"),
+        ]
+        for name, text, message in cases:
+            with self.subTest(message=message):
+                found = self.faults_with(name, text)
+                self.assertEqual(len(found), 1, found)
+                self.assertIn(message, found[0])
+        shorter = "void F() {\n" + body(check.MAX_FUNCTION - 2) + "}\n"
+        not_functions = ("const int kTable[] = {\n" + "  1,\n" * 50 + "};\n"
+                         "struct A {\n" + body(50) + "};\n"
+                         "namespace a {\n" + "\n" * 50 + "}  // namespace a\n")
+        self.assertEqual(self.faults_with("frame/x.cpp", shorter + not_functions), [])
 
     def test_a_crowded_folder_is_a_fault(self):
         with tempfile.TemporaryDirectory() as directory:
