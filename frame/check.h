@@ -1,4 +1,4 @@
-// Checks at the doors of stages: always on, and the message says what was expected.
+// Checks of inputs. They are always on, and their message says what was expected.
 #pragma once
 
 #include <cassert>
@@ -43,5 +43,5 @@ struct MessageValue {
     if (!(condition)) ::eigenlight::detail::throw_invalid(format, {__VA_ARGS__}); \
   } while (false)
 
-/// Checked in debug builds only: for pixel loops, whose inputs were checked at the door.
+/// Checked in debug builds only: for pixel loops, whose inputs were checked before.
 #define EL_DCHECK(condition) assert(condition)

@@ -64,8 +64,8 @@ using hn::StoreU;
 using hn::Sub;
 using hn::Zero;
 
-/// Tags: the longest vectors of the CPU, and those of at most 8 or 16 floats. The last argument of
-/// the functions below; without it they work on the longest vectors.
+/// Tags of the longest vectors of the CPU, and of vectors of at most 8 or 16 floats. The functions
+/// below take a tag as their last argument; without it they work on the longest vectors.
 using F = hn::ScalableTag<float>;
 using F8 = hn::CappedTag<float, 8>;
 using F16 = hn::CappedTag<float, 16>;
@@ -97,7 +97,7 @@ HWY_INLINE VF Iota(float first) { return Iota(F(), first); }
 HWY_INLINE VF Iota(int first) { return Iota(static_cast<float>(first)); }
 HWY_INLINE VF NaN() { return Set(std::numeric_limits<float>::quiet_NaN()); }
 
-/// The first `count` lanes, all of them if there are no more.
+/// The first `count` lanes, or all of them if there are fewer.
 template <class D = F>
 HWY_INLINE hn::Mask<D> FirstLanes(int count, D d = {}) {
   return hn::FirstN(d, static_cast<std::size_t>(count));
@@ -112,7 +112,7 @@ HWY_INLINE double SumLanes(hn::Vec<D> v, D d = {}) {
 }
 
 /// Calls visit(x, y) for each vector of pixels (x, y), (x + 1, y), ... of an area, row by row. The
-/// last of a row may reach beyond it.
+/// last vector of a row may reach beyond the area.
 template <class Visit, class D = F>
 HWY_INLINE void ForEachVector(const Rect& area, const Visit& visit, D d = {}) {
   for (int y = area.y0; y < area.y1; ++y) {
@@ -130,8 +130,8 @@ HWY_INLINE void Store(hn::Vec<D> v, Plane<hn::TFromD<D>>& plane, int x, int y, D
   StoreU(v, d, plane.row(y) + x);
 }
 
-/// Load() and Store() of kernels that read or write a plane once, row by row: they ask for the
-/// pixels below (frame/prefetch.h).
+/// Load() and Store() for kernels that read or write a plane once, row by row: they also prefetch
+/// the pixels below (frame/prefetch.h).
 template <class D = F>
 HWY_INLINE hn::Vec<D> LoadAndPrefetch(const Plane<hn::TFromD<D>>& plane, int x, int y, D d = {}) {
   prefetch_below(plane, x, y);
@@ -144,7 +144,7 @@ HWY_INLINE void StoreAndPrefetch(hn::Vec<D> v, Plane<hn::TFromD<D>>& plane, int 
   Store(v, plane, x, y, d);
 }
 
-/// Pixels of a plane of bytes as integers; and back, of values in [0, 255].
+/// Converts pixels of a plane of bytes to integers, and integers in [0, 255] back.
 template <class D = I>
 HWY_INLINE hn::Vec<D> LoadBytes(const Plane<std::uint8_t>& plane, int x, int y, D d = {}) {
   return hn::PromoteTo(d, LoadU(hn::Rebind<std::uint8_t, D>(), plane.row(y) + x));
@@ -183,8 +183,8 @@ HWY_INLINE void Store(const Vec3<hn::Vec<D>>& v, Planes<3>& planes, int x, int y
   for (int c = 0; c < 3; ++c) Store(v[c], planes[c], x, y, d);
 }
 
-/// a . b, summed from the last term to the first, and from the first to the last: these round
-/// differently.
+/// a . b. Dot() adds from the last term to the first, DotInOrder() from the first to the last: they
+/// round differently.
 template <class V>
 HWY_INLINE V Dot(const Vec3<V>& a, const Vec3<V>& b) {
   return MulAdd(a[0], b[0], MulAdd(a[1], b[1], Mul(a[2], b[2])));
@@ -208,7 +208,7 @@ HWY_INLINE hn::Mask<D> HasSurface(const Plane<std::uint32_t>& id, int x, int y, 
   return RebindMask(d, Ne(Load(id, x, y, du), Zero(du)));
 }
 
-/// is_usable_surface() but for the id: where depth and normal can be calculated with.
+/// is_usable_surface() without its test of the id: depth and normal are in range.
 template <class D = F>
 HWY_INLINE hn::Mask<D> IsUsable(hn::Vec<D> depth, const Vec3<hn::Vec<D>>& normal, D d = {}) {
   hn::Mask<D> usable = And(Ge(depth, Set(d, kNearestDepth)), Le(depth, Set(d, kFarthestDepth)));

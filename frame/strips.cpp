@@ -5,7 +5,7 @@
 namespace eigenlight {
 namespace {
 
-// Of each thread, that one which is late has little left for the others to wait for.
+// Per thread: a thread that is late then has little left that the others wait for.
 constexpr int kShare = 8;
 
 int tiles_of_strip(const TileGrid& grid) {

@@ -1,15 +1,15 @@
-// A tile grid walked as memory lies: along rows that are long enough for hardware to foresee.
+// Walks a tile grid in the order of memory, along rows long enough for hardware prefetching.
 #pragma once
 
 #include "frame/tiles.h"
 
 namespace eigenlight {
 
-/// Widest strip in pixels. Along so many the hardware foresees what comes, and eight rows of twenty
-/// planes (800 kB) still fit the second-level cache. What that is worth: docs/performance.md.
+/// Widest strip in pixels: long enough for hardware prefetching, while eight rows of twenty planes
+/// (800 kB) still fit the second-level cache. docs/performance.md has measurements.
 inline constexpr int kStripWidth = 1280;
 
-/// What strips may narrow down to for many threads: sixteen cache lines of a row of floats.
+/// Narrowest strip, taken for many threads: sixteen cache lines of a row of floats.
 inline constexpr int kNarrowStrip = 256;
 
 /// Neighboring tiles of one row of a grid, at least one.
@@ -35,7 +35,7 @@ void for_each_part(const TileGrid& grid, const Strip& band, Body&& body) {
 }
 
 /// Calls body(band) for the rows of a strip, `rows` of them at a time, from the top down. For work
-/// in several steps that is to find in the first-level cache what the step before left.
+/// in several steps: each finds in the first-level cache what the step before has written.
 template <typename Body>
 void for_each_band(const Strip& strip, int rows, Body&& body) {
   for (int y = strip.area.y0; y < strip.area.y1; y += rows) {
@@ -48,7 +48,7 @@ void for_each_band(const Strip& strip, int rows, Body&& body) {
 
 /// Calls body(segment) for each row of pixels of each tile of a strip or band, as a tile one row
 /// high with the index of its tile: line by line, each from left to right. The rows of one tile
-/// come in order. For work that needs nothing of the rows around it.
+/// come in order. For work that reads no other rows.
 template <typename Body>
 void for_each_segment(const TileGrid& grid, const Strip& strip, Body&& body) {
   for_each_band(strip, 1, [&](const Strip& row) { for_each_part(grid, row, body); });

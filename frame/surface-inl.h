@@ -23,7 +23,7 @@ HWY_INLINE Surface LoadSurface(const GBuffer& surface, int x, int y) {
   return {Load(surface.normal, x, y), Load(surface.depth, x, y), Load(surface.id, x, y, U())};
 }
 
-/// Asks for what LoadSurface() reads of the row below (frame/prefetch.h).
+/// Prefetches the pixels that LoadSurface() reads in the row below (frame/prefetch.h).
 HWY_INLINE void PrefetchSurface(const GBuffer& surface, int x, int y) {
   prefetch_below(surface.depth, x, y);
   for (const auto& plane : surface.normal) prefetch_below(plane, x, y);
@@ -49,7 +49,7 @@ struct Rays {
   HWY_INLINE VF X(VF x) const { return Mul(Sub(x, center_x), inverse_focal); }
   HWY_INLINE VF Y(VF y) const { return Mul(Sub(y, center_y), inverse_focal); }
 
-  /// N . ray, N in view space: times depth, the distance of the tangent plane from the eye.
+  /// N . ray, N in view space. Times depth it is the distance of the tangent plane from the eye.
   HWY_INLINE VF Along(const VF3& normal, VF x, VF y) const {
     return MulAdd(normal[0], X(x), MulAdd(normal[1], Y(y), normal[2]));
   }

@@ -92,8 +92,8 @@ void run_loop(int count, const std::function<void(int)>& body) {
 
 #else
 
-// Thread sanitizer cannot see into a TBB that was not built for it, and reports races that are
-// none; builds for it take this plain loop instead.
+// Thread sanitizer reports false races in a TBB that was not built for it: builds with it use this
+// plain loop instead.
 void run_loop(int count, const std::function<void(int)>& body) {
   std::atomic<int> next{0};
   std::exception_ptr failure;

@@ -97,8 +97,8 @@ void for_each_tile(const TileGrid& grid, const std::function<void(const Tile&)>&
 void set_thread_count(int threads);
 [[nodiscard]] int thread_count();
 
-/// Takes the loops above through their indices in another order, for tests that nothing depends on
-/// it: 0 is the plain order, every other number one of its own. Not to be called while a loop runs.
+/// Makes the loops above visit their indices in another order, for tests that it does not matter:
+/// 0 is the plain order, every other number another one. Not to be called while a loop runs.
 void set_loop_order(std::uint32_t order);
 
 }  // namespace eigenlight

@@ -16,7 +16,7 @@ inline constexpr float kNearestDepth = 1e-15f, kFarthestDepth = 1e15f;
 
 /// Whether a pixel shows a surface (id not 0) whose normal and depth can be squared, summed and
 /// divided by without overflow: depth in [kNearestDepth, kFarthestDepth], components of the normal
-/// up to kLargestNormal. False for NaN and Inf, which is no floating-point fault.
+/// up to kLargestNormal. False for NaN and Inf, without a floating-point trap.
 [[nodiscard]] inline bool is_usable_surface(const GBuffer& surface, int x, int y) {
   const float depth = surface.depth(x, y);
   bool usable = surface.id(x, y) != 0 && std::isgreaterequal(depth, kNearestDepth) &&

@@ -16,10 +16,10 @@ inline constexpr int kBlock = static_cast<int>(Plane<float>::kLine / sizeof(floa
 /// K bases of an RGB image and the age of each pixel, in blocks of 16 pixels of a row:
 ///   [y][x / 16] { [channel][k] 16 floats, 16 ages }.
 ///
-/// Vectors run along a line of a block, and the block is one stretch of memory: as planes of their
-/// own, 3 K + 1 of them, bases took a third longer. The age travels through the same taps as the
+/// Vectors run along a line of a block, and a block is contiguous memory: stored as 3 K + 1 planes,
+/// bases took a third longer. The age travels through the same taps as the
 /// values it belongs to. All are 0 without history, and so are pixels behind the last one of a row,
-/// for kernels run over whole vectors: who writes there, writes 0.
+/// because kernels process whole vectors: a kernel that writes there writes 0.
 class BasisField {
  public:
   BasisField() = default;

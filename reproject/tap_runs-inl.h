@@ -13,7 +13,7 @@ HWY_BEFORE_NAMESPACE();
 namespace eigenlight::HWY_NAMESPACE {
 
 /// Lanes of a vector of pixels whose taps lie side by side: lane i has its upper left tap at
-/// (x + i, y). Most vectors are one run, and plain loads take a fraction of the time of gathers.
+/// (x + i, y). Most vectors are one run, and loads are much faster than gathers.
 struct TapRun {
   int x, y;
   MF lanes;

@@ -11,7 +11,7 @@ HWY_BEFORE_NAMESPACE();
 namespace eigenlight::HWY_NAMESPACE {
 namespace {
 
-// What a vector of pixels asks of its taps.
+// A vector of pixels whose surface is looked for in the previous frame.
 struct Query {
   Surface own;
   VF3 view_normal;
@@ -20,7 +20,7 @@ struct Query {
   MF valid;
 };
 
-// Motion that leads into the image or to less than a pixel beside it. False for NaN.
+// Where (x, y) is inside the image or less than a pixel outside. False for NaN.
 MF LeadsInto(Extent extent, VF x, VF y) {
   const auto within = [](VF v, int size) { return And(Gt(v, Set(-1)), Lt(v, Set(size))); };
   return And(within(x, extent.width), within(y, extent.height));
@@ -73,7 +73,7 @@ struct AxisWeights {
 struct Weights {
   VF tap[4];
 
-  // Scaled to a sum of 1. A sum below 1 % is one far corner that happened to pass: it is dropped.
+  // Scales them to a sum of 1. A sum below 1 % is dropped: only a far corner matched by chance.
   void Normalize() {
     const VF sum = Add(Add(tap[0], tap[1]), Add(tap[2], tap[3])), one = Set(1);
     const MF enough = Ge(sum, Set(0.01f));

@@ -87,7 +87,7 @@ void Atrous::run_pass(const Pass& in, int pass, Planes<3>& color, Plane<float>& 
                         variance,  in.earlier, scratch_color_, scratch_variance_};
   const auto is_wanted = [&](const Tile& tile) { return in.wanted[tile] != 0; };
   for_each_strip(grid_, [&](const Strip& strip) {
-    // Neighbors that are wanted alike are filtered as one.
+    // Neighboring tiles that are all wanted, or all not, are processed as one.
     Tile area = grid_.tile(strip.area.index);
     bool filtered = is_wanted(area);
     const auto run = [&] { filtered ? atrous_tile(work, area) : copy_tile(work, area); };

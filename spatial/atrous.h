@@ -36,19 +36,18 @@ struct AtrousOptions {
 ///                            * e(|l_q - l_p| / (luminance_sigmas * sigma_p + 1e-4 |l_p|)
 ///                              + |g_q - g_p| / (earlier_sigmas * sigma_p + earlier_share |g_p|))
 /// where sigma_p^2 is the variance of luminance around p (3 x 3 Gaussian) and e(x) = (1 - x/8)^8,
-/// close to exp(-x), ends at x = 8. g is the luminance of an earlier picture, already filtered,
-/// brought to this one's pixels: it knows, with less noise, where light changes from one pixel to
-/// the next, and is read for nothing else. Without one its term is 0, as it is where either g is
-/// NaN: not known. Variances follow: var(p) = sum (h w)^2 var(q) / (sum h w)^2. Pixels without
-/// surface neither give nor take; they keep their value. Nor do pixels whose normals have a product
-/// above kLargestCosine, or that have no depth, take from each other.
+/// close to exp(-x), ends at x = 8. g is the luminance of an earlier, filtered picture, warped to
+/// the pixels of this one: with less noise it shows where light changes from one pixel to the next.
+/// It is used for nothing else. Its term is 0 without an earlier picture, and where either g is
+/// unknown (NaN). Variances follow: var(p) = sum (h w)^2 var(q) / (sum h w)^2. Pixels without
+/// surface keep their value and give nothing to others. Pixels that have no depth, or whose normals
+/// have a product above kLargestCosine, do not mix.
 ///
-/// In blocks whose taps all lie in one plane (planar_blocks.h)
-/// weights of geometry are taken to be 1 and not calculated: none is off by more than 0.5 %.
+/// Where all taps lie in one plane (planar_blocks.h) the weights of geometry are 1 within 0.5 % and
+/// are not calculated.
 ///
-/// `color` and `variance` are filtered in place; the scratch planes have the same extent. Tiles in
-/// which no variance exceeds `quiet` times the squared luminance are copied; `skipped` counts their
-/// pixels. Throws std::invalid_argument if extents differ.
+/// `color` and `variance` are filtered in place. Tiles in which no variance exceeds `quiet` times
+/// the squared luminance are copied. Throws std::invalid_argument if extents differ.
 class Atrous {
  public:
   Atrous(Extent extent, const AtrousOptions& options);

@@ -14,10 +14,10 @@ HWY_BEFORE_NAMESPACE();
 namespace eigenlight::HWY_NAMESPACE {
 namespace {
 
-// Whose light weighs a tap.
+// Which light the weight of a tap depends on.
 enum class LightOf { kNone, kOwn, kOwnAndEarlier };
 
-// What weighs a tap.
+// What the weight of a tap depends on.
 template <bool kGeometryWeighs, LightOf kLightOf>
 struct Weighing {
   static constexpr bool kGeometry = kGeometryWeighs, kLight = kLightOf != LightOf::kNone;
@@ -38,7 +38,7 @@ HWY_INLINE Geometry LoadGeometry(const AtrousPass& pass, int x, int y) {
           Div(Set(0.125f), tolerance)};
 }
 
-// The light of the output pixels, and 1 / 8 over how far that of a tap may be off.
+// The light of the output pixels, and 1 / (8 tolerance) of its difference to that of a tap.
 struct Light {
   VF luminance, scale;
   VF earlier, earlier_scale;
@@ -51,7 +51,7 @@ HWY_INLINE VF LightScale(float sigmas, VF sigma, float share, VF luminance) {
   return Div(Set(0.125f), Add(tolerance, Set(1e-20f)));
 }
 
-// NaN, which is not known, does not count.
+// NaN stands for an unknown value, which does not count.
 HWY_INLINE VF KnownOrZero(VF v) { return IfThenZeroElse(IsNaN(v), v); }
 
 template <typename By>
@@ -147,8 +147,8 @@ HWY_INLINE void StoreCenter(const AtrousPass& pass, const Sums& sums, int x, int
   store(Mul(sums.variance, Mul(scale, scale)), pass.variance, pass.out_variance);
 }
 
-// One vector of output pixels. All of geometry first: what it needs and what light and sums need
-// does not fit 16 registers at once.
+// One vector of output pixels. All weights of geometry come first: 16 registers do not hold the
+// values that geometry, light and sums need at once.
 template <typename By, typename Taps>
 HWY_INLINE void FilterVector(const AtrousPass& pass, std::span<const AtrousTapRow> rows,
                              const Taps& taps, int y, VF smooth_variance) {

@@ -19,7 +19,7 @@ bool any_wanted(const Plane<std::uint8_t>& wanted, const Tile& tile) {
   return false;
 }
 
-// Of every eighth pixel of every eighth row: it need not be exact, but the same for all runs.
+// Of every eighth pixel of every eighth row. It may be rough but must be the same for all runs.
 float mean_log_depth(const FrameInput& frame) {
   double sum = 0.0, count = 0.0;
   for (int y = 0; y < frame.extent().height; y += 8) {
@@ -78,8 +78,8 @@ std::int64_t GuidedFilter::process(const GuidedInputs& in, Planes<3>& out) {
   return skipped;
 }
 
-// Tiles side by side and one above the other are filtered in one go as far as they form a
-// rectangle within a strip: each saves the other a halo.
+// Neighboring tiles that form a rectangle within a strip are filtered as one run: they share their
+// halos.
 void GuidedFilter::plan_runs(const Plane<std::uint8_t>& wanted) {
   for_each_tile(grid_, [&](const Tile& tile) { wanted_[tile] = any_wanted(wanted, tile) ? 1 : 0; });
   runs_.clear();
@@ -101,7 +101,7 @@ void GuidedFilter::plan_runs(const Plane<std::uint8_t>& wanted) {
   }
 }
 
-// Extends the run that ends right above `run`, of those from number `first` on.
+// Joins `run` to the run directly above it, if there is one among those from number `first` on.
 void GuidedFilter::add_run(const Tile& run, std::size_t first) {
   for (std::size_t i = first; i < runs_.size(); ++i) {
     if (runs_[i].y1 == run.y0 && runs_[i].x0 == run.x0 && runs_[i].x1 == run.x1) {

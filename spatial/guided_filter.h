@@ -47,15 +47,15 @@ struct GuidedScratch;
 /// windows around all surface pixels k within `radius` are averaged: out(p) = mean(a_k) . I_p +
 /// mean(b_k). The logarithm makes the depth dimensionless and the same for every window.
 ///
-/// A pixel's signal counts where it is finite and its weight positive and finite; all others, NaN
-/// or not, touch no sum, but get an output from their geometry, too. Surfaces are those of
+/// A pixel's signal counts where it is finite and its weight positive and finite. All other pixels
+/// add to no sum, but their geometry gives them an output, too. Surfaces are those of
 /// is_usable_surface() (frame/usable_surface.h). Output is 0 without surface and where no window
 /// holds a usable signal. It is linear in the signal and may thus leave its range, below 0 as well.
 ///
-/// A sum has the values of its own window only, so that nothing drifts and no firefly leaves a
-/// trace. Down and along, eight windows at a time are made of what leaves the next of them, what
-/// enters, and what all have in common, for which sums of eight rows or columns are kept: of
-/// additions only the latter grow with the radius, by one for eight windows and 4 pixels of it.
+/// A sum adds the values of its own window only: rounding errors do not accumulate, and a firefly
+/// leaves no trace. Eight neighboring windows are summed at a time, first down, then along. The
+/// rows or columns that all eight share are added once, from kept sums of eight: only that part
+/// grows with the radius, by one addition for eight windows and 4 pixels of radius.
 class GuidedFilter {
  public:
   /// Throws std::invalid_argument on a bad size or option.

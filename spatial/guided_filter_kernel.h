@@ -15,18 +15,18 @@ inline constexpr int kMostGuides = 4;
 inline constexpr int kGuidedBlock = 8;
 inline constexpr int kBlockPixels = kGuidedBlock * kGuidedBlock;
 
-/// Most columns of a run. Halos of 2 radius on either side make narrow strips dear, wide ones leave
+/// Most columns of a run. Halos of 2 radius on either side make narrow runs slow; wide runs leave
 /// threads without work: docs/performance.md.
 [[nodiscard]] constexpr int guided_strip(int radius) {
   return std::max(2 * kGuidedTile, 16 * radius / kGuidedTile * kGuidedTile);
 }
 
-/// Values of a pixel that sums are made of: w, guides I_i, w N_c.
+/// Values of a pixel that are summed: w, guides I_i, w N_c.
 [[nodiscard]] constexpr int guided_values(int n) { return 1 + n + 3; }
 /// Sums over a window that the fit of n guides needs: w; w I_i; w N_c; w I_i I_j, i <= j; w I_i
 /// N_c.
 [[nodiscard]] constexpr int guided_sums(int n) { return 1 + n + 3 + n * (n + 1) / 2 + 3 * n; }
-/// What a fit leaves: a and b of each channel, and 1 if the window counts.
+/// Values of a fit: a and b of each channel, and 1 if the window counts.
 [[nodiscard]] constexpr int guided_fits(int n) { return 3 * (n + 1) + 1; }
 
 [[nodiscard]] constexpr int round_up_to_blocks(int n) {
@@ -41,21 +41,21 @@ struct GuidedRing {
   int slots;
   std::size_t row, sum;
 };
-/// Where the summands of eight windows of span + 1 rows lie in a ring of rows: window g is of the
-/// rows from base - span + g to base + g. All have the rows [base - span + 8, base) in common, of
-/// which as many as possible are summed up already, by blocks from a multiple of eight on.
+/// Where the rows and sums that make eight windows of span + 1 rows lie in a ring. Window g holds
+/// the rows from base - span + g to base + g. All eight share the rows [base - span + 8, base):
+/// where these fill whole blocks of eight from a multiple of eight on, their sums exist already.
 struct GuidedWindow {
-  /// Sums of rows before `first` are left out: there are none.
+  /// Rows before `first` do not exist and are left out.
   GuidedWindow(int base, int span, const GuidedRing& ring, int first);
 
   int span;
   std::size_t at[2 * kGuidedRadius + kGuidedBlock] = {};    ///< of row base - span + i
   std::size_t sums[2 * kGuidedRadius / kGuidedBlock] = {};  ///< within the common rows
-  std::size_t rest[kGuidedBlock] = {};                      ///< common rows besides
+  std::size_t rest[kGuidedBlock] = {};                      ///< of common rows outside such blocks
   int sum_count = 0, rest_count = 0;
 };
 
-/// Rows of the image as they come, then as they count. Columns begin `lead` left of the run.
+/// Rows of the image, first raw, then weighted. Columns begin `lead` left of the run.
 struct GuidedRow {
   explicit GuidedRow(int width)
       : normal(make_planes<3>({width, 1})),
@@ -69,9 +69,9 @@ struct GuidedRow {
   Plane<std::uint32_t> id;
 };
 
-/// Rings of the last rows, and within a block of rows of the last columns: as many as a window
-/// reaches back, rounded up to blocks, and the present block. What belongs to a block lies
-/// together.
+/// Rings of the last rows and, within a block of rows, of the last columns. A ring holds as many as
+/// a window reaches back, rounded up to blocks, and the present block. The values of a block are
+/// contiguous.
 struct GuidedScratch {
   GuidedScratch(int radius, int guide_count);
 
@@ -96,10 +96,9 @@ struct GuidedScratch {
   Plane<float> fit_row_sums;  ///< row (block * slots + slot) / 8: over 8 rows
   Plane<float> fitted;        ///< row fit: 8 rows of 8 columns, summed over rows, too
 
-  /// Windows by the block of the ring that they end in: of `values`, where `first_windows` are for
-  /// the first `lead` rows of the image; of `columns` and `fit_rows`; and
-  /// of `fits` those that end lead - span columns further left, so that what is filtered begins
-  /// with a block.
+  /// Windows by the block of the ring in which they end: of `values` (`first_windows` are those of
+  /// the first `lead` rows of the image), of `columns` and of `fit_rows`. Those of `fits` end lead
+  /// - span columns further left, so that the filtered pixels begin with a block.
   std::vector<GuidedWindow> first_windows, value_windows, column_windows, fit_windows,
       fit_row_windows;
 };

@@ -35,7 +35,7 @@ class Filter {
   }
 
  private:
-  // No row comes into their slots before they have left all windows.
+  // A slot is reused only after its row has left all windows.
   void ClearRowsAbove() {
     for (int slot = s_.slots - s_.lead; slot < s_.slots; ++slot) {
       for (int block = 0; block < blocks_; ++block) {
@@ -99,7 +99,7 @@ class Filter {
     return sums.row((block * s_.slots + ring_slot(y, s_.slots)) / kGuidedBlock);
   }
 
-  // Rows y to y + 7 of a block, each sum over all of them: what windows have of them later.
+  // Sums over the rows y to y + 7 of a block, for later windows that contain all of them.
   void SumBlock(int block, int y) {
     float* sums = Sums(block, y, s_.value_sums);
     const auto row = s_.values.stride() * static_cast<std::size_t>(ring_slot(y, s_.slots));

@@ -1,4 +1,4 @@
-// What the guided filter does at each window and each pixel, sums given.
+// Fits the windows of the guided filter from their sums, and applies the fits to pixels.
 #include "spatial/guided_filter_kernel.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -39,8 +39,8 @@ class Fit {
     MF8 sound;
   };
 
-  // In exact arithmetic a pivot is at least epsilon, since Cov is positive semidefinite; half of
-  // it says that rounding has won.
+  // In exact arithmetic a pivot is at least epsilon, since Cov is positive semidefinite. A pivot
+  // below half of it is a rounding error.
   Factors Factorize(const VF8 (&covariance)[kN][kN]) const {
     const F8 d;
     Factors f;

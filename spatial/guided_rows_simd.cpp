@@ -44,12 +44,12 @@ VF8 GuideAt(const GuidedWork& work, const GuidedRow& row, int index, int x) {
   const F8 d;
   if (work.options.guides == Guides::kGrayNormal) return Luminance(Load(row.normal, x, 0, d));
   if (index < 3) return Load(row.normal[index], x, 0, d);
-  // Lanes that do not count must not cost time as NaN or denormals.
+  // Lanes that do not count become 0: NaN and denormals would cost time.
   const VF8 depth = Max(Load(row.depth, x, 0, d), Set(d, 1e-38f));
   return Sub(Log(d, depth), Set(d, work.log_depth));
 }
 
-// Turns a row of raw values into weights, guides and weighted signals; 0 where they must not count.
+// Turns a row of raw values into weights, guides and weighted signals; 0 where they do not count.
 void MaskRow(const GuidedWork& work, int width, int y, GuidedScratch& s) {
   const F8 d;
   const auto guides = static_cast<int>(work.options.guides);

@@ -85,7 +85,7 @@ struct GuidedLengths {
   int row, sum;
 };
 
-/// Asks for rows and sums that SumWindows() is going to read: wide windows outgrow the
+/// Prefetches the rows and sums that SumWindows() will read: those of wide windows do not fit the
 /// second-level cache.
 inline void PrefetchWindows(const GuidedWindow& w, const float* rows, const float* sums,
                             const GuidedLengths& lengths) {

@@ -1,4 +1,4 @@
-// Where a frame shows one plane: there, weights of normals and plane distances are 1.
+// Finds blocks of pixels that lie in one plane, where weights of normals and plane distances are 1.
 #pragma once
 
 #include <cstdint>
@@ -12,10 +12,10 @@ namespace eigenlight {
 /// block is planar if of all its pixels q, and its first pixel p,
 ///   id_q != 0,  |1 - N_p . N_q| <= 1e-6,  |N_p . (X_q - X_p)| <= tolerance * depth_p,
 /// and two planar blocks lie in one plane if this holds for the first pixel of each and the other's
-/// p. Normals that are not unit vectors, and depths that are none, are in no plane.
+/// p. Normals that are not unit vectors and invalid depths lie in no plane.
 ///
-/// Blocks reckon with what their own neighbors lie in, so that a margin of two may be off by twice
-/// the tolerance.
+/// Each block is compared with its own neighbors only, so that a margin of two blocks may be off by
+/// twice the tolerance.
 class PlanarBlocks {
  public:
   static constexpr int kSide = 8;        ///< pixels

@@ -28,7 +28,7 @@ PlanarBlocks::Block PlaneOf(const FrameInput& guides, int x, int y) {
 }
 
 // Where a vector of pixels lies in the plane of a block. `along`: N . ray. Products and sums are
-// rounded one by one, so that every instruction set comes to the same answer.
+// rounded one by one, so that every instruction set gives the same answer.
 MF8 LiesInPlane(const FrameInput& guides, const PlanarBlocks::Block& block, VF8 along,
                 VF8 tolerance, int x, int y) {
   const F8 d;

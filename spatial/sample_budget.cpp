@@ -6,7 +6,7 @@
 namespace eigenlight {
 namespace {
 
-// Rows at once: enough that a histogram is worth its summing, few enough for many threads.
+// Rows of a strip: few enough for many threads, enough that adding histograms takes little time.
 constexpr int kRows = 16;
 
 }  // namespace

@@ -11,7 +11,7 @@ inline constexpr int kBudgetBins = 256;
 using AgeHistogram = std::array<std::int64_t, kBudgetBins>;
 
 /// Adds the pixels of a row that show a surface, by age * spp rounded to whole samples. What has
-/// `oldest` samples or more goes into that bin, as nobody asks how old it is. An age that is
+/// `oldest` samples or more goes into that bin, because no more is needed. An age that is
 /// negative or NaN counts as 0.
 void count_ages(const std::uint32_t* id, const float* age, int count, int spp, int oldest,
                 AgeHistogram& pixels);

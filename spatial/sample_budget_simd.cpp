@@ -10,8 +10,8 @@ HWY_BEFORE_NAMESPACE();
 namespace eigenlight::HWY_NAMESPACE {
 namespace {
 
-// Age in whole samples, to the nearest: most ages are whole numbers but for the rounding of their
-// warp, and must not lose a sample to it.
+// Age in samples, rounded to the nearest: most ages are whole numbers with a small error from
+// warping, which must not cost a sample.
 VI AgeSamples(const float* age, int spp) {
   const VF n = LoadU(F(), age);
   // Not fused, so that every instruction set rounds alike.

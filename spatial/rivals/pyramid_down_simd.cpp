@@ -31,8 +31,8 @@ void LoadMembers(const PyramidFineBlock& block, int row, int column, Member (&me
   }
 }
 
-// The mean of the members that exist. The length of its normal would add the same to all energies:
-// it is 1, where the series of the energy is good.
+// The mean of the members that exist. Its normal is scaled to length 1, where the series of the
+// energy is exact; the length would only add the same to all energies.
 Attributes MeanOf(const Member (&members)[4]) {
   const F16 d;
   Attributes mean{{{Zero(d), Zero(d), Zero(d)}}, Zero(d)};

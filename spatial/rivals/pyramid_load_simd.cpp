@@ -20,9 +20,9 @@ VF16 LoadInside(MF16 inside, const Plane<float>& plane, int x, int y) {
   return IfThenElseZero(inside, Load(plane, x, y, F16()));
 }
 
-// A row of the image is read in two visits, surface and signal: all nine planes at once are one
-// more than the eight lines that a first-level cache has for addresses a page apart, as those of
-// planes are.
+// A row of the image is read twice, first the surface, then the signal. All nine planes at once
+// would be one more than the eight lines that a first-level cache keeps for addresses a page apart,
+// as those of planes may be.
 
 // Normal and depth are 0 where there is no surface.
 void LoadSurface(const GBuffer& surface, int x, int y, MF16 inside,

@@ -1,4 +1,4 @@
-// The face of every filter that works on one frame alone.
+// The interface of filters that work on one frame alone.
 #pragma once
 
 #include "frame/frame.h"

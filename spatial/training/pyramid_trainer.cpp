@@ -9,7 +9,7 @@ namespace eigenlight {
 namespace {
 
 constexpr std::size_t kNumbers = 19;  // of a pass: fine, coarse, gamma
-// A start of 0 has no logarithm, and from far below 1 the way up takes long.
+// 0 has no logarithm, and a start far below 1 takes many steps.
 constexpr double kSmallestStart = 0.02;
 constexpr double kRate = 0.1;     // in logarithms; docs/experiments/2026-11-pyramid.md
 constexpr double kGrowth = 1.05;  // of the rate after an accepted step
