@@ -14,32 +14,9 @@
 #include <vector>
 
 #include "frame/plane.h"
+#include "sequences/exr/exr_write.h"
 
 namespace eigenlight {
-
-enum class ExrType { kHalf, kFloat, kUint };
-
-/// One channel to write: a plane of floats (half or float in the file) or of integers (kUint).
-struct ExrChannel {
-  std::string name;  ///< `R`, `albedo.G`
-  ExrType type = ExrType::kHalf;
-  std::variant<const Plane<float>*, const Plane<std::uint32_t>*> pixels;
-};
-
-/// For row vectors, as in OpenEXR: p' = p M, translation in the last row.
-using ExrMatrix = std::array<float, 16>;
-
-struct ExrAttribute {
-  std::string name;
-  std::variant<int, float, std::string, ExrMatrix> value;
-};
-
-/// Writes a scanline file, ZIP compressed, with write_file_atomically(). NaN and Inf are kept; a
-/// finite value beyond 65504 becomes Inf in a half channel, so choose kFloat for such a layer.
-/// Equal input gives equal bytes. Throws std::invalid_argument unless all planes have the same
-/// extent, std::runtime_error naming the file if it cannot be written.
-void write_exr(const std::filesystem::path& path, std::span<const ExrChannel> channels,
-               std::span<const ExrAttribute> attributes);
 
 /// Writes one picture of 32-bit floats, whose channels are the letters of `axes`: `RGB`, `XYZ`.
 inline void write_float_layer(const std::filesystem::path& path, std::string_view axes,
@@ -53,8 +30,8 @@ inline void write_float_layer(const std::filesystem::path& path, std::string_vie
 
 /// Reads layers of any OpenEXR file: scanlines or tiles, one part or many. The layer of a channel
 /// is its name up to the last dot: `albedo.R` belongs to `albedo`. Bare `R`, `G`, `B`, `A` belong
-/// to the layer "", other bare names (`Z`, `id`) are layers of their own. In a file of several
-/// parts the part's name comes first, unless the channel names repeat it.
+/// to the layer "", other bare names (`Z`, `id`) are layers of their own. From the second part on
+/// the part's name comes first, unless the channel names repeat it.
 ///
 /// In files of other renderers our layer names `color`, `albedo`, `N`, `Z`, `P`, `motion`,
 /// `direct`, `indirect` find the layers of Cycles, Arnold, RenderMan and pbrt with that meaning
@@ -74,7 +51,8 @@ class ExrReader {
 
   /// All channels of a layer, R G B A or X Y Z W first and in that order. Pixels of the display
   /// window outside the data window are 0. Throws BadFile naming file and layer if the layer is
-  /// missing or holds integers, std::runtime_error if it cannot be decoded.
+  /// missing, deep, subsampled or holds integers, or if the display window is larger than planes
+  /// may be; std::runtime_error if it cannot be decoded.
   [[nodiscard]] std::vector<Plane<float>> read(std::string_view layer) const;
   /// The first N channels of a layer. Throws BadFile if it has fewer.
   template <int N>
@@ -88,7 +66,7 @@ class ExrReader {
   /// The first channel of a layer of integers. Throws BadFile if it is not of type uint.
   [[nodiscard]] Plane<std::uint32_t> read_uint(std::string_view layer) const;
 
-  /// An attribute of the first part's header.
+  /// An attribute of the first part's header. Nothing if it is of another type.
   [[nodiscard]] std::optional<std::variant<int, float, std::string, ExrMatrix>> attribute(
       const std::string& name) const;
 

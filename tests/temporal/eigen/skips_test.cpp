@@ -94,6 +94,7 @@ TEST(Skips, PlanesNeedNoWeightsOfGeometry) {
 // picture by no more than that.
 TEST(Skips, QuietTilesNeedNoFilter) {
   AnalyticOptions options = scene();
+  options.gain = [](int) { return 1.0f; };
   options.noise = 0.005f;
   EigenOptions all;
   all.quiet_variance = 0.0f;
