@@ -40,6 +40,7 @@ ROOMS = {
     "render/paths": ["render/lights"],
     "render/antialias": ["render/paths"],
     "render": ["render/antialias", "render/builtin", "render/loading"],
+    "sequences/conventions": ["frame"],
     "sequences/files/atomic_file.h": [],
     "sequences/exr": ["frame", "sequences/files/atomic_file.h"],
     "sequences/files": ["sequences/exr"],
@@ -50,7 +51,7 @@ ROOMS = {
     "sequences/compare": ["sequences/pages", "sequences/runs"],
     "sequences/lab": ["sequences/compare", "sequences/stress", "spatial/training"],
     "sequences/cli": ["sequences/lab"],
-    "tests": ["sequences/cli"],
+    "tests": ["sequences/cli", "sequences/conventions"],
 }
 FOLDERS = sorted({room.split("/")[0] for room in ROOMS})
 

@@ -156,6 +156,19 @@ class CoreReader {
   exr_context_t context_ = nullptr;
 };
 
+/// Whether `replaced` holds "PART CHANNEL"; `channel` has its levels behind it.
+inline bool is_replaced(const std::vector<std::string>& replaced, std::size_t part,
+                        const std::string& channel) {
+  for (const std::string& name : replaced) {
+    const std::size_t space = name.find(' ');
+    if (name.substr(0, space) == fmt::format("{}", part) &&
+        channel.starts_with(fmt::format("{} ", name.substr(space + 1)))) {
+      return true;
+    }
+  }
+  return false;
+}
+
 /// What differs between two files, one difference a line; nothing if they are equal but for the
 /// pixels of the channels named in `replaced`, "PART CHANNEL". Parts without such a channel must
 /// have equal chunks, others equal values, whatever the compression.
@@ -169,25 +182,15 @@ inline std::vector<std::string> differences(const CoreFile& a, const CoreFile& b
   if (a.parts.size() != b.parts.size()) return {"number of parts"};
   for (std::size_t i = 0; i < a.parts.size(); ++i) {
     const CorePart &one = a.parts[i], &two = b.parts[i];
-    const auto is_replaced = [&](const std::string& channel) {
-      for (const std::string& name : replaced) {
-        const std::size_t space = name.find(' ');
-        if (name.substr(0, space) == fmt::format("{}", i) &&
-            channel.starts_with(fmt::format("{} ", name.substr(space + 1)))) {
-          return true;
-        }
-      }
-      return false;
-    };
     bool is_new = false;
-    for (const auto& [channel, values] : one.values) is_new |= is_replaced(channel);
+    for (const auto& [channel, values] : one.values) is_new |= is_replaced(replaced, i, channel);
     if (!is_new && one.chunks != two.chunks) note(i, "chunks");
     if (one.values.size() != two.values.size()) note(i, "number of channels");
     for (const auto& [channel, values] : one.values) {
       const auto other = two.values.find(channel);
       if (other == two.values.end()) {
         note(i, "no channel " + channel);
-      } else if (!is_replaced(channel) && other->second != values) {
+      } else if (!is_replaced(replaced, i, channel) && other->second != values) {
         note(i, "values of " + channel);
       }
     }

@@ -45,7 +45,22 @@ std::map<std::string, std::string> all_levels(const std::filesystem::path& path)
   return found;
 }
 
+// All levels of the channels that keep their pixels.
+std::map<std::string, std::string> passenger_levels(const std::filesystem::path& path) {
+  auto levels = all_levels(path);
+  std::erase_if(levels, [](const auto& entry) {
+    return entry.first.starts_with("albedo.R ") || entry.first.starts_with("Z ");
+  });
+  return levels;
+}
+
 class EachKind : public testing::TestWithParam<Kind> {};
+
+void expect_equal_planes(const Plane<float>& found, const Plane<float>& wanted) {
+  for (int y = 0; y < wanted.height(); ++y) {
+    for (int x = 0; x < wanted.width(); ++x) ASSERT_EQ(found(x, y), wanted(x, y));
+  }
+}
 
 TEST_P(EachKind, OnlyTheChosenChannelChanges) {
   const Kind& kind = GetParam();
@@ -70,13 +85,7 @@ TEST_P(EachKind, OnlyTheChosenChannelChanges) {
   EXPECT_EQ(report.levels.empty(), kind.levels == Imf::ONE_LEVEL);
   EXPECT_EQ(report.clamped, 0);
   if (kind.is_tiled) {
-    auto before = all_levels(dir / "in.exr"), after = all_levels(dir / "out.exr");
-    for (auto* levels : {&before, &after}) {
-      std::erase_if(*levels, [](const auto& entry) {
-        return entry.first.starts_with("albedo.R ") || entry.first.starts_with("Z ");
-      });
-    }
-    EXPECT_TRUE(before == after);
+    EXPECT_TRUE(passenger_levels(dir / "in.exr") == passenger_levels(dir / "out.exr"));
   }
   // The core of OpenEXR 3.1 cannot find the tiles of rip maps.
   if (kind.levels != Imf::RIPMAP_LEVELS) {
@@ -88,12 +97,8 @@ TEST_P(EachKind, OnlyTheChosenChannelChanges) {
   }
   const ExrFile again(dir / "out.exr");
   const std::vector<Plane<float>> read = again.read(std::array{light, depth});
-  for (int y = 0; y < pixels.height(); ++y) {
-    for (int x = 0; x < pixels.width(); ++x) {
-      ASSERT_EQ(read[0](x, y), pixels(x, y));
-      ASSERT_EQ(read[1](x, y), depths(x, y));
-    }
-  }
+  expect_equal_planes(read[0], pixels);
+  expect_equal_planes(read[1], depths);
 }
 
 INSTANTIATE_TEST_SUITE_P(
