@@ -13,6 +13,7 @@
 #include "frame/bad_file.h"
 #include "sequences/cli/command.h"
 #include "sequences/cli/compare_command.h"
+#include "sequences/cli/denoise_command.h"
 #include "sequences/cli/evaluate_command.h"
 #include "sequences/cli/job.h"
 #include "sequences/cli/judge_pyramid_command.h"
@@ -28,8 +29,9 @@ namespace {
 
 // In the order of `eigenlight --help`.
 constexpr Command (*kCommands[])(CLI::App&) = {
-    add_render_command,  add_scenes_command, add_methods_command,       add_evaluate_command,
-    add_compare_command, add_stress_command, add_train_pyramid_command, add_judge_pyramid_command,
+    add_render_command,  add_denoise_command,       add_scenes_command,
+    add_methods_command, add_evaluate_command,      add_compare_command,
+    add_stress_command,  add_train_pyramid_command, add_judge_pyramid_command,
 };
 
 // Errors of CLI11 may span lines.

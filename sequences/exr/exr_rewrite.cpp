@@ -125,31 +125,13 @@ std::string copy_header(const ExrFile::State& in, const Plan& plan) {
   return header;
 }
 
-// Where the chunks of a part are, in the order of the file.
-std::vector<std::uint64_t> chunk_places(const ExrFile::State& in, const Plan& plan, int part) {
-  std::uint64_t table = in.raw.end;
-  for (int i = 0; i < part; ++i) {
-    const Imf::Header& header = in.file->header(i);
-    table += static_cast<std::uint64_t>(ExrChunkGrid(header, header.compression()).count()) * 8;
-  }
-  const ExrChunkGrid& grid = plan.grids[static_cast<std::size_t>(part)];
-  std::vector<unsigned char> bytes(static_cast<std::size_t>(grid.count()) * 8);
-  in.bytes->read_at(table, bytes.data(), bytes.size());
-  std::vector<std::uint64_t> places(static_cast<std::size_t>(grid.count()), 0);
-  for (std::size_t i = 0; i < bytes.size(); ++i) {
-    places[i / 8] |= static_cast<std::uint64_t>(bytes[i]) << (8 * (i % 8));
-  }
-  std::sort(places.begin(), places.end());
-  return places;
-}
-
 void copy_part(const ExrFile::State& in, const Plan& plan, int part, ExrOutput& out) {
   const ExrChunkGrid& grid = plan.grids[static_cast<std::size_t>(part)];
   const std::size_t number_bytes = in.raw.is_multipart() ? 4 : 0;
   std::vector<unsigned char> head(grid.head_bytes()), number(4);
   std::vector<char> data;
   std::uint64_t end = in.raw.end;
-  for (const std::uint64_t place : chunk_places(in, plan, part)) {
+  for (const std::uint64_t place : chunk_places(in, part)) {
     // A place of 0 was never filled in; chunks that overlap would make a small file huge.
     if (place < end) throw Iex::InputExc("chunks are missing or overlap");
     if (place > in.bytes->size()) throw Iex::InputExc("the file ends early");

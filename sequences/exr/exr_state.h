@@ -5,6 +5,7 @@
 #include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfPixelType.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <mutex>
@@ -41,6 +42,8 @@ struct ExrFile::State {
 [[nodiscard]] std::vector<ExrChannelInfo> describe_channels(const Imf::Header& header, int part,
                                                             bool is_multipart);
 [[nodiscard]] ExrPart describe_part(const Imf::Header& header);
+/// Where the chunks of a part are, in the order of the file; 0 for a chunk that was never written.
+[[nodiscard]] std::vector<std::uint64_t> chunk_places(const ExrFile::State& file, int part);
 /// Lines of one chunk of a part that is not tiled.
 [[nodiscard]] int lines_of_chunk(Imf::Compression compression);
 

@@ -1,0 +1,93 @@
+#include "sequences/cli/denoise_command.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "sequences/cli/job.h"
+#include "sequences/denoise/plan_text.h"
+
+namespace eigenlight {
+namespace {
+
+struct DenoiseCommand {
+  DenoiseSettings settings;
+  bool dry_run = false;
+  JobOptions job;
+};
+
+void add_file_options(CLI::App& command, DenoiseCommand& options) {
+  FileChoice& files = options.settings.files;
+  command
+      .add_option("input", files.inputs,
+                  "EXR files: a pattern such as shot.####.exr, or a file; several for frames whose "
+                  "layers lie in several files")
+      ->required();
+  command
+      .add_option("-o,--output", files.output,
+                  "Folder for files of the same names; or a pattern, or a file, that ends in .exr")
+      ->required();
+  command.add_option("--frames", files.frames, "Such as 7, 1-24 or 1-100x5 [all that exist]");
+  command.add_flag("--overwrite", files.overwrite, "Allow that an output is an input");
+  command.add_flag("--skip-existing", options.settings.skip_existing,
+                   "Do not write frames again whose output is complete");
+  command.add_flag("--resume", options.settings.resume, "Go on where an interrupted run stopped");
+  command.add_flag("--dry-run", options.dry_run,
+                   "Print what would be done with each layer, and stop");
+}
+
+void add_layer_options(CLI::App& command, DenoiseSettings& settings) {
+  command
+      .add_option("--map", settings.layers.map,
+                  "ROLE=LAYER: what a layer is. Roles: beauty, light, albedo, normal, depth, "
+                  "position, motion, id. Several light=LAYER name all layers that are denoised")
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->allow_extra_args(false);
+  command.add_option("--keep", settings.layers.keep,
+                     "Regular expression: layers of light to copy as they are");
+  command.add_option("--skip", settings.layers.skip,
+                     "Regular expression: layers not to look at, only to copy");
+  command.add_option("--motion", settings.guides.motion,
+                     "What motion vectors mean: cycles, arnold, renderman, vray, optix, none, or "
+                     "words such as x,-y,pixels,backward,first [found out]");
+  command.add_option("--camera", settings.guides.camera,
+                     "File with a camera for each frame [NAME.camera.json beside the input]");
+  command.add_option("--cuts", settings.cuts, "Frames at which a new shot begins, such as 101,240");
+}
+
+int denoise(const DenoiseCommand& command, const Console& console) {
+  const Job job(command.job, console);
+  const DenoisePlan plan = plan_denoising(command.settings);
+  if (command.dry_run) {
+    job.print_results(to_json(plan), to_text(plan));
+    return kSuccess;
+  }
+  job.say(to_text(plan));
+  Progress progress = job.progress(0, plan.frames.size());
+  const DenoiseTotals totals =
+      run_denoising(command.settings, plan,
+                    {[&] { return job.interrupted(); }, [&](int f) { progress.frame_done(f); }});
+  progress.finish();
+  job.stop_if_interrupted(fmt::format("stopped after {} of {} frames; to go on:\n  {}{}",
+                                      totals.frames, plan.frames.size(), job.command_line(),
+                                      command.settings.resume ? "" : " --resume"));
+  job.print_results(to_json(totals), to_text(totals));
+  return kSuccess;
+}
+
+}  // namespace
+
+Command add_denoise_command(CLI::App& app) {
+  CLI::App* parser =
+      app.add_subcommand("denoise",
+                         "Denoise EXR sequences of any renderer: the same files with "
+                         "clean light");
+  const auto command = std::make_shared<DenoiseCommand>();
+  add_file_options(*parser, *command);
+  add_layer_options(*parser, command->settings);
+  add_job_options(*parser, command->job, "Print the plan or the summary as JSON");
+  return {parser, [command](const Console& console) { return denoise(*command, console); }};
+}
+
+}  // namespace eigenlight

@@ -1,0 +1,141 @@
+#include "sequences/denoise/layer_list.h"
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <optional>
+
+namespace eigenlight {
+namespace {
+
+struct Suffix {
+  std::string_view name;
+  char letter;
+};
+
+// Lower case.
+constexpr std::array<Suffix, 14> kSuffixes{{{"r", 'R'},
+                                            {"g", 'G'},
+                                            {"b", 'B'},
+                                            {"a", 'A'},
+                                            {"red", 'R'},
+                                            {"green", 'G'},
+                                            {"blue", 'B'},
+                                            {"alpha", 'A'},
+                                            {"x", 'X'},
+                                            {"y", 'Y'},
+                                            {"z", 'Z'},
+                                            {"w", 'W'},
+                                            {"u", 'X'},
+                                            {"v", 'Y'}}};
+constexpr std::string_view kColor = "RGBA", kVector = "XYZW";
+
+std::optional<char> letter_of(std::string_view suffix) {
+  std::string lower(suffix);
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const auto found = std::find_if(kSuffixes.begin(), kSuffixes.end(),
+                                  [&](const Suffix& s) { return s.name == lower; });
+  if (found == kSuffixes.end()) return std::nullopt;
+  return found->letter;
+}
+
+struct Named {
+  std::string prefix;  // of the channel's name, without its last word
+  char letter = 0;     // 0: a layer of its own
+  std::size_t index = 0;
+};
+
+// The words of a full name, without the view where it is one of them or the end of one.
+std::string without_view(const std::string& name, const std::string& view) {
+  if (view.empty()) return name;
+  std::string kept;
+  std::size_t start = 0;
+  while (start <= name.size()) {
+    const std::size_t end = std::min(name.find('.', start), name.size());
+    std::string word = name.substr(start, end - start);
+    for (const char separator : {'_', '.'}) {
+      const std::string tail = separator + view;
+      if (word.size() > tail.size() && word.ends_with(tail)) word.resize(word.size() - tail.size());
+    }
+    if (word != view) kept += kept.empty() ? word : '.' + word;
+    start = end + 1;
+  }
+  return kept;
+}
+
+Named split(const ExrChannelInfo& channel) {
+  const std::string name = without_view(channel.full_name, channel.view);
+  const std::size_t dot = name.rfind('.');
+  const std::string last = dot == std::string::npos ? name : name.substr(dot + 1);
+  const std::string prefix = dot == std::string::npos ? std::string() : name.substr(0, dot);
+  const std::optional<char> letter = letter_of(last);
+  if (letter) return {prefix, *letter, 0};
+  return {name, 0, 0};
+}
+
+// Which layer a channel belongs to, and where it stands in it.
+struct Place {
+  std::string layer;
+  std::size_t order = 0;
+};
+
+Place place_of(const Named& named, bool in_color) {
+  const std::string_view set = in_color ? kColor : kVector;
+  const std::size_t order = named.letter == 0 ? std::string_view::npos : set.find(named.letter);
+  // Bare letters that are no color stand alone: the depth Z; Y, the gray of a luminance picture.
+  const bool is_alone = order == std::string_view::npos || (named.prefix.empty() && !in_color);
+  if (!is_alone) return {named.prefix, order};
+  if (named.letter == 0) return {named.prefix, 0};
+  const std::string letter(1, named.letter);
+  return {named.prefix.empty() ? letter : named.prefix + '.' + letter, 0};
+}
+
+bool has_color(const std::vector<Named>& all, const std::vector<ExrChannelInfo>& channels,
+               const Named& one, const std::string& view) {
+  return std::any_of(all.begin(), all.end(), [&](const Named& other) {
+    return other.prefix == one.prefix && channels[other.index].view == view &&
+           kColor.find(other.letter) < 3;
+  });
+}
+
+}  // namespace
+
+std::string name_for_people(const FileLayer& layer) {
+  const std::string name = layer.name.empty() ? "color" : layer.name;
+  return layer.view.empty() ? name : layer.view + ": " + name;
+}
+
+std::vector<FileLayer> list_layers(const ExrFile& file, int input) {
+  const std::vector<ExrChannelInfo>& channels = file.channels();
+  std::vector<Named> names;
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    names.push_back(split(channels[i]));
+    names.back().index = i;
+  }
+  std::vector<FileLayer> layers;
+  std::vector<std::multimap<std::size_t, std::string>> members;  // full names by order
+  for (const Named& named : names) {
+    const ExrChannelInfo& channel = channels[named.index];
+    const Place place = place_of(named, has_color(names, channels, named, channel.view));
+    auto found = std::find_if(layers.begin(), layers.end(), [&](const FileLayer& l) {
+      return l.name == place.layer && l.view == channel.view;
+    });
+    if (found == layers.end()) {
+      layers.push_back(
+          {place.layer, channel.view, input, channel.part, channel.type, false, false, {}});
+      found = layers.end() - 1;
+      members.emplace_back();
+    }
+    found->is_deep |= file.parts()[static_cast<std::size_t>(channel.part)].is_deep;
+    found->is_subsampled |= channel.x_sampling != 1 || channel.y_sampling != 1;
+    members[static_cast<std::size_t>(found - layers.begin())].emplace(place.order,
+                                                                      channel.full_name);
+  }
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    for (const auto& [order, name] : members[i]) layers[i].channels.push_back(name);
+  }
+  return layers;
+}
+
+}  // namespace eigenlight

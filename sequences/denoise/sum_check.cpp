@@ -1,0 +1,159 @@
+#include "sequences/denoise/sum_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "frame/frame.h"
+
+namespace eigenlight {
+namespace {
+
+bool is_zero(const LayerPlanes& planes) {
+  return std::all_of(planes.begin(), planes.end(), [](const Plane<float>& plane) {
+    for (int y = 0; y < plane.height(); ++y) {
+      const float* row = plane.row(y);
+      if (std::any_of(row, row + plane.width(), [](float v) { return v != 0.0f; })) return false;
+    }
+    return true;
+  });
+}
+
+void set_row(LayerPlan& plan, const FileLayer& layer, std::string_view use, std::string_view why) {
+  for (PlanRow& row : plan.rows) {
+    if (row.layer != name_for_people(layer)) continue;
+    row.use = use;
+    row.why = why;
+  }
+}
+
+void drop_absent(const std::vector<RawFrame>& frames, ViewPlan& view, LayerPlan& plan) {
+  std::vector<std::size_t> place(view.lights.size(), 0);
+  std::vector<PlannedLight> kept;
+  for (std::size_t i = 0; i < view.lights.size(); ++i) {
+    const FileLayer& layer = *view.lights[i].layer;
+    const bool is_absent = std::all_of(frames.begin(), frames.end(), [&](const RawFrame& frame) {
+      return is_zero(frame.at(layer));
+    });
+    place[i] = is_absent ? view.lights.size() : kept.size();
+    if (is_absent) {
+      set_row(plan, layer, "copied", "constant 0");
+    } else {
+      kept.push_back(view.lights[i]);
+    }
+  }
+  for (PlannedSum& sum : view.sums) {
+    std::vector<std::size_t> lights;
+    for (const std::size_t light : sum.lights) {
+      if (place[light] < view.lights.size()) lights.push_back(place[light]);
+    }
+    sum.lights = std::move(lights);
+  }
+  view.lights = std::move(kept);
+}
+
+// A sum that is not the sum of its parts is denoised for itself.
+void separate(ViewPlan& view, std::size_t sum, const std::string& why, LayerPlan& plan) {
+  const FileLayer layer = view.sums[sum].layer;
+  view.sums.erase(view.sums.begin() + static_cast<std::ptrdiff_t>(sum));
+  if (view.lights.size() >= kMaxLights) {
+    set_row(plan, layer, "copied", why + "; no layer of light is left for it");
+    return;
+  }
+  view.lights.push_back({"beauty", layer, view.albedo, false});
+  set_row(plan, layer, "denoised", why);
+}
+
+void refine_sum(const RawFrame& frame, ViewPlan& view, std::size_t index, LayerPlan& plan,
+                std::vector<std::string>& notes) {
+  const PlannedSum& sum = view.sums[index];
+  const SumCheck found = check_sum(view, sum, frame);
+  notes.push_back(fmt::format("{}: parts add up to {:.2f} % of it, off by {:.2f} % per pixel",
+                              name_for_people(sum.layer), 100.0 * (1.0 - found.mean),
+                              100.0 * found.absolute));
+  const bool is_complete =
+      found.absolute <= kRoundingAbsolute && std::abs(found.mean) <= kRoundingMean;
+  if (is_complete) return;
+  if (found.mean < -kRoundingMean) {
+    return separate(view, index, "less than its parts: as a layer of its own", plan);
+  }
+  const bool is_beauty = view.beauty && key_of(*view.beauty) == key_of(sum.layer);
+  if (!is_beauty) return separate(view, index, "not the sum of its parts", plan);
+  if (view.lights.size() >= kMaxLights) {
+    notes.push_back(fmt::format("{}: what it has beyond its parts passes as it is",
+                                name_for_people(sum.layer)));
+    return;
+  }
+  view.sums[index].lights.push_back(view.lights.size());
+  view.lights.push_back({"rest of beauty", std::nullopt, std::nullopt, false});
+  notes.push_back(fmt::format("{}: what it has beyond its parts is denoised as a layer of its own",
+                              name_for_people(view.sums[index].layer)));
+}
+
+}  // namespace
+
+const Plane<float>& channel_of(const LayerPlanes& planes, int channel) {
+  return planes[planes.size() < 3 ? 0 : static_cast<std::size_t>(channel)];
+}
+
+LightChannel light_channel(const PlannedLight& light, const RawFrame& frame, int channel) {
+  LightChannel found;
+  if (light.layer) found.value = &channel_of(frame.at(*light.layer), channel);
+  if (light.color) found.color = &channel_of(frame.at(*light.color), channel);
+  found.is_divided = light.is_divided;
+  return found;
+}
+
+SumChannels sum_channels(const ViewPlan& view, const PlannedSum& sum, const RawFrame& frame,
+                         int channel) {
+  SumChannels found;
+  found.whole = &channel_of(frame.at(sum.layer), channel);
+  found.is_beauty = view.beauty && key_of(*view.beauty) == key_of(sum.layer);
+  for (const std::size_t i : sum.lights) {
+    found.lights.push_back(light_channel(view.lights[i], frame, channel));
+  }
+  if (!found.is_beauty) return found;
+  for (const FileLayer& layer : view.emission) {
+    found.emission.push_back(&channel_of(frame.at(layer), channel));
+  }
+  return found;
+}
+
+SumCheck check_sum(const ViewPlan& view, const PlannedSum& sum, const RawFrame& frame) {
+  std::array<double, 3> total{};  // of (sum - parts), of its absolute, of |sum|
+  for (int c = 0; c < 3; ++c) {
+    const SumChannels in = sum_channels(view, sum, frame, c);
+    for (int y = 0; y < in.whole->height(); ++y) {
+      for (int x = 0; x < in.whole->width(); ++x) {
+        double parts = 0.0;
+        for (std::size_t i = 0; i < in.lights.size(); ++i) {
+          if (!in.lights[i].value) continue;
+          parts += static_cast<double>((*in.lights[i].value)(x, y)) *
+                   static_cast<double>(in.weight(i, x, y));
+        }
+        for (const Plane<float>* plane : in.emission) parts += static_cast<double>((*plane)(x, y));
+        const double value = static_cast<double>((*in.whole)(x, y));
+        if (!std::isfinite(parts) || !std::isfinite(value)) continue;
+        total[0] += value - parts;
+        total[1] += std::abs(value - parts);
+        total[2] += std::abs(value);
+      }
+    }
+  }
+  if (total[2] == 0.0) return {};
+  return {total[0] / total[2], total[1] / total[2]};
+}
+
+void refine_plan(const std::vector<RawFrame>& frames, LayerPlan& plan,
+                 std::vector<std::string>& notes) {
+  for (ViewPlan& view : plan.views) {
+    drop_absent(frames, view, plan);
+    for (std::size_t i = view.sums.size(); i-- > 0;) {
+      refine_sum(frames.front(), view, i, plan, notes);
+    }
+  }
+}
+
+}  // namespace eigenlight
