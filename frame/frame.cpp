@@ -23,7 +23,7 @@ void copy_plane(const Planes<N>& from, Planes<N>& to) {
 void copy_frame(const Frame& from, Frame& to) {
   // Names every member, so that one that is added later cannot be forgotten here.
   const auto& [number, previous, still, samples, camera, surface, lights, motion, previous_depth,
-               rays, non_finite] = static_cast<const FrameInput&>(from);
+               mean_normal, rays, non_finite] = static_cast<const FrameInput&>(from);
   const auto& [depth, normal, albedo, id] = surface;
   to.index = number;
   to.previous_index = previous;
@@ -36,11 +36,14 @@ void copy_frame(const Frame& from, Frame& to) {
   copy_plane(id, to.surface.id);
   to.lights.resize(lights.size());
   for (std::size_t i = 0; i < lights.size(); ++i) {
-    copy_plane(lights[i].radiance, to.lights[i].radiance);
-    copy_plane(lights[i].color, to.lights[i].color);
+    const auto& [radiance, color, is_direct] = lights[i];
+    copy_plane(radiance, to.lights[i].radiance);
+    copy_plane(color, to.lights[i].color);
+    to.lights[i].is_direct = is_direct;
   }
   copy_plane(motion, to.motion);
   copy_plane(previous_depth, to.previous_depth);
+  copy_plane(mean_normal, to.mean_normal);
   to.rays = rays;
   to.non_finite_samples = non_finite;
   copy_plane(from.direct, to.direct);

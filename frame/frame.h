@@ -30,6 +30,8 @@ struct GBuffer {
 struct NoisyLight {
   Planes<3> radiance;  ///< over `color`, linear Rec. 709; may hold NaN and Inf
   Planes<3> color;     ///< what a picture multiplies it by; empty: the albedo of the surface
+  /// Direct light: its edges are sharp, move over surfaces and are in no guide.
+  bool is_direct = false;
 };
 
 /// Most layers of light that a frame holds.
@@ -48,6 +50,9 @@ struct FrameInput {
   std::vector<NoisyLight> lights = std::vector<NoisyLight>(1);  ///< one to kMaxLights layers
   Planes<2> motion;  ///< pixels: what is seen at p was at p + motion(p) in the previous frame
   Plane<float> previous_depth;  ///< depth that the same point had there, for that frame's camera
+  /// Mean over the samples of a pixel, shorter than 1 where they differ; empty: guides have no
+  /// noise.
+  Planes<3> mean_normal;
 
   std::int64_t rays = 0;                ///< traced for this frame so far, resampling included
   std::int64_t non_finite_samples = 0;  ///< samples the source itself excluded

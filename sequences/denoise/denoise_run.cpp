@@ -14,7 +14,7 @@
 #include "sequences/exr/exr_rewrite.h"
 #include "sequences/files/checkpoint.h"
 #include "sequences/files/directory.h"
-#include "temporal/eigen/eigen_denoiser.h"
+#include "temporal/eigen/soft_denoiser.h"
 
 namespace eigenlight {
 namespace {
@@ -46,7 +46,6 @@ std::string describe(const DenoiseSettings& settings, const DenoisePlan& plan) {
   json["motion"] = settings.guides.motion;
   json["camera"] = settings.guides.camera;
   json["cuts"] = plan.cuts;
-  json["bases"] = settings.bases;
   json["canvas"] = {plan.canvas.x, plan.canvas.y, plan.canvas.width, plan.canvas.height};
   for (const FramePaths& frame : plan.frames) json["frames"].push_back(frame.frame);
   return json.dump();
@@ -64,9 +63,8 @@ class Run {
     for (std::size_t v = 0; v < plan.layers.views.size(); ++v) {
       const ViewPlan& view = plan.layers.views[v];
       builders_.emplace_back(view, plan.readings[v], plan.canvas, plan.cuts);
-      denoisers_.push_back(std::make_unique<EigenDenoiser>(
+      denoisers_.push_back(std::make_unique<SoftDenoiser>(
           DenoiserOptions{.extent = {plan.canvas.width, plan.canvas.height},
-                          .bases = settings.bases,
                           .layers = static_cast<int>(view.lights.size())}));
     }
   }
@@ -89,7 +87,7 @@ class Run {
   const DenoisePlan& plan_;
   const DenoiseCallbacks& callbacks_;
   std::vector<FrameBuilder> builders_;
-  std::vector<std::unique_ptr<EigenDenoiser>> denoisers_;
+  std::vector<std::unique_ptr<SoftDenoiser>> denoisers_;
   BoundedQueue<ReadyFrame> ready_;
   BoundedQueue<FinishedFrame> done_;
   std::size_t position_ = 0;  // frames that were complete before
@@ -206,7 +204,7 @@ FinishedFrame Run::denoise(ReadyFrame ready, std::size_t index) {
   for (std::size_t v = 0; v < denoisers_.size(); ++v) {
     ReadySource source;
     source.set(ready.views[v].get());
-    EigenDenoiser& denoiser = *denoisers_[v];
+    SoftDenoiser& denoiser = *denoisers_[v];
     if (!denoiser.step(source)) throw std::logic_error("a frame was lost");
     std::vector<const Planes<3>*> lights;
     for (int i = 0; i < denoiser.layers(); ++i) lights.push_back(&denoiser.output(i));

@@ -20,7 +20,6 @@ struct DenoiseSettings {
   LayerChoice layers;
   GuideChoice guides;
   std::string cuts;  ///< frames at which a new shot begins, as parse_frame_range() takes them
-  int bases = 3;
   bool skip_existing = false;  ///< frames whose outputs are complete are not written again
   bool resume = false;         ///< go on from the checkpoint of an interrupted run
 };

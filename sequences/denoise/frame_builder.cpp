@@ -109,11 +109,11 @@ void FrameBuilder::build_surface(const RawFrame& raw, const RawGuides& guides, F
   } else {
     out.surface.depth.fill(1.0f);
   }
-  Planes<3> mean;
   if (!guides.normal[0].empty()) {
-    apply_normal(guides.normal, readings_.normal, known, out.surface.normal, mean);
+    apply_normal(guides.normal, readings_.normal, known, out.surface.normal, out.mean_normal);
   } else {
     for (auto& plane : out.surface.normal) plane.fill(0.0f);
+    for (auto& plane : out.mean_normal) plane = {};
   }
   if (!guides.albedo[0].empty()) copy_planes(guides.albedo, out.surface.albedo);
   const auto ids = raw.ids.find(view_.view);
@@ -135,6 +135,8 @@ void FrameBuilder::build_lights(const RawFrame& raw, Frame& out) {
   for (std::size_t i = 0; i < view_.lights.size(); ++i) {
     Planes<3>& radiance = out.lights[i].radiance;
     ensure_extent(radiance, {canvas_.width, canvas_.height});
+    const std::string& what = view_.lights[i].what;
+    out.lights[i].is_direct = what.ends_with(" direct") || what == "beauty";
     if (!view_.lights[i].layer) {
       build_rest(raw, view_, radiance);
     } else {

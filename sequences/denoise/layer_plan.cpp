@@ -54,7 +54,6 @@ class Planner {
   void check_map() const;
   [[nodiscard]] std::vector<PlanRow> rows() const;
   [[nodiscard]] std::string known_layers() const;
-  [[noreturn]] void fail_without_light() const;
 
   const Layers& layers_;
   std::vector<MappedLayer> map_;
@@ -272,13 +271,6 @@ std::string Planner::known_layers() const {
   return known;
 }
 
-void Planner::fail_without_light() const {
-  throw BadFile(
-      fmt::format("no layer of light found to denoise; say which it is with --map light=LAYER or "
-                  "--map beauty=LAYER; the files have: {}",
-                  known));
-}
-
 LayerPlan Planner::plan() {
   std::vector<std::string> views;
   for (const FileLayer& layer : layers_) {
@@ -288,7 +280,12 @@ LayerPlan Planner::plan() {
   }
   for (const std::string& view : views) plan_view(view);
   check_map();
-  if (result_.views.empty()) fail_without_light();
+  if (result_.views.empty()) {
+    throw BadFile(
+        fmt::format("no layer of light found to denoise; say which it is with --map light=LAYER or "
+                    "--map beauty=LAYER; the files have: {}",
+                    known_layers()));
+  }
   result_.rows = rows();
   return std::move(result_);
 }

@@ -24,6 +24,8 @@ class EigenDenoiser final : public Denoiser {
   [[nodiscard]] int layers() const { return static_cast<int>(layers_.size()); }
   /// What step() made of a layer of light: radiance over its color.
   [[nodiscard]] const Planes<3>& output(int layer) const { return at(layer).output(); }
+  /// Variance of the luminance of output(layer).
+  [[nodiscard]] const Plane<float>& variance(int layer) const { return at(layer).variance(); }
   [[nodiscard]] const Frame& frame() const override { return shared_.frame(); }
   [[nodiscard]] const FrameReport& report() const override { return report_; }
   /// Of the first layer.

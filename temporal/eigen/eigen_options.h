@@ -34,6 +34,8 @@ struct EigenOptions {
   float quiet_variance = 1e-5f;
   /// [0, 1] of the pixels that must need correction before another basis is born.
   double birth_share = 0.1;
+  /// Gains are ratios of sums of light (even_sums.h), for history with heavy noise; one basis.
+  bool even_gain = false;
   bool project = true;     ///< solve for coefficients; else the light is taken to be steady
   bool correct = true;     ///< add the smoothed innovation
   bool filter = true;      ///< a-trous passes over the output

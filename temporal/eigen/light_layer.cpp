@@ -4,6 +4,7 @@
 
 #include "frame/strips.h"
 #include "reproject/warp.h"
+#include "temporal/bases/even_sums.h"
 #include "temporal/bases/predict.h"
 #include "temporal/bases/update.h"
 #include "temporal/change/edges.h"
@@ -78,11 +79,14 @@ void LightLayer::sum_products(const SharedFrame& shared, const Strip& band) {
   const Planes<3>& light = shared.frame().lights[static_cast<std::size_t>(index_)].radiance;
   const SumInputs history{bases_.now, light, variance_.now, coefficient_history_.active()};
   for_each_part(tiles_, band, [&](const Tile& part) {
-    if (!shared.is_empty(part)) accumulate_tile(history, part, sums_[part]);
+    if (shared.is_empty(part)) return;
+    if (options_.even_gain) return accumulate_even(history, part, sums_[part]);
+    accumulate_tile(history, part, sums_[part]);
   });
 }
 
 void LightLayer::finish_warp(const SharedFrame& shared) {
+  if (options_.even_gain) return;
   const Planes<3>& light = shared.frame().lights[static_cast<std::size_t>(index_)].radiance;
   const SumInputs history{bases_.now, light, variance_.now, coefficient_history_.active()};
   for_each_tile(tiles_, [&](const Tile& tile) { admit_outliers(history, tile, sums_[tile]); });

@@ -65,6 +65,7 @@ class LightLayer {
 
   /// The picture: radiance over the layer's color.
   [[nodiscard]] const Planes<3>& output() const { return output_; }
+  [[nodiscard]] const Plane<float>& variance() const { return output_variance_; }  ///< of output()
   [[nodiscard]] const Plane<float>& age() const { return new_age_; }
   /// Adds what this layer counted in this frame; the shared frame counts surfaces.
   void add_to(const SharedFrame& shared, FrameReport& report) const;

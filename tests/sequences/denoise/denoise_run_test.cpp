@@ -140,7 +140,7 @@ TEST_F(DenoiseRun, ACheckpointOfOtherOptionsIsRefused) {
   DenoiseSettings options = settings();
   run(options, 2);
   options.resume = true;
-  options.bases = 2;
+  options.cuts = "4";
   EXPECT_THAT([&] { run(options); },
               ThrowsMessage<BadFile>(HasSubstr("a run with other inputs or options")));
 }

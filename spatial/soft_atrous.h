@@ -1,0 +1,93 @@
+// Edge-avoiding a-trous passes for frames whose guides are noisy themselves.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "frame/frame.h"
+#include "frame/tiles.h"
+
+namespace eigenlight {
+
+struct SoftAtrousOptions {
+  int passes = 4;  ///< [1, 6]; pass i reaches radius * 2^i pixels
+  int radius = 2;  ///< 1: 3 x 3 taps, 2: 5 x 5
+  /// (0, 10] Differences of guides that weigh a neighbor by 1/e: of mean normals, of color, and of
+  /// the logarithm of depth. Found on two Cycles shots at 4 samples a pixel.
+  float normal = 1.0f, color = 0.5f, depth = 0.5f;
+
+  void validate() const;  ///< throws std::invalid_argument naming the field
+};
+
+/// A picture to filter in place.
+struct SoftLayer {
+  Planes<3>* light;
+  Plane<float>* variance;  ///< of the light's luminance
+  float sigmas = 5.0f;     ///< (0, 100] standard deviations that still count as the same light
+};
+
+/// As Atrous (atrous.h), with two differences. Guides are means over the samples of a pixel, and
+/// noisy: weights of geometry are wide Gaussians of differences of the means themselves, in place
+/// of distances from a plane and powers of a cosine,
+///   g(p, q) = e(|n_p - n_q|^2 / normal^2 + |a_p - a_q|^2 / color^2
+///               + (log z_p - log z_q)^2 / depth^2),
+/// n the mean normal, which is shorter than 1 where samples differ. And light is compared by means
+/// over 3 x 3 pixels of the same surface,
+///   l(p) = sum_q h(q) g(p, q) luminance(q) / sum_q h(q) g(p, q),
+/// with the variance of such a mean, in place of single pixels: an outlier is unlike all its
+/// neighbors, and would keep its light to itself.
+///   out(p) = sum_q k(q) w(p, q) c(q) / sum_q k(q) w(p, q),
+///   w = g(p, q) * e(|l_p - l_q| / (sigmas * sigma_p + 1e-4 |l_p| + 1e-6)),
+/// k binomial (radius 1) or B3 spline weights (radius 2), e(x) = (1 - x/8)^8 up to x = 8, then 0.
+/// Variances follow: var(p) = sum (k w)^2 var(q) / (sum k w)^2. The weight of a pixel itself is
+/// k(0). Pixels without surface (id 0), or whose light or variance is not finite, give nothing;
+/// such a pixel of a surface takes what its neighbors give it.
+///
+/// Weights of geometry are calculated once for all layers.
+class SoftAtrous {
+ public:
+  SoftAtrous(Extent extent, const SoftAtrousOptions& options);
+
+  /// `mean_normal` may be empty: then it is the frame's normal. Throws std::invalid_argument if
+  /// extents differ.
+  void process(const FrameInput& frame, const Planes<3>& mean_normal,
+               std::span<const SoftLayer> layers);
+
+ private:
+  struct Buffers {
+    Planes<3> light;
+    // tolerance: 1 over the difference of luminance that counts as the same light.
+    Plane<float> variance, mean, tolerance, usable, sum;
+  };
+  // One neighbor of a row of pixels.
+  struct TapRow {
+    int y, dx, dy, x0, x1;
+    float kernel;
+    const float* geometry;
+  };
+
+  void prepare(const FrameInput& frame, const Planes<3>& mean_normal);
+  void find_near();
+  void exclude_bad(const FrameInput& frame, std::span<const SoftLayer> layers);
+  void find_means(const SoftLayer& layer, Buffers& buffer, int y) const;
+  void filter_row(std::span<const SoftLayer> layers, int pass, int y);
+  void start_row(const SoftLayer& layer, Buffers& out, int y) const;
+  void add_tap(const SoftLayer& layer, const TapRow& tap, Buffers& out) const;
+  void finish_row(Buffers& out, int y) const;
+
+  Extent extent_;
+  SoftAtrousOptions options_;
+  // Guides: normal over its width, color, log depth; and 1 where the pixel is a surface.
+  std::vector<Plane<float>> guides_;
+  Plane<float> surface_;
+  Plane<float> geometry_;  // weights of the tap at hand, for each row
+  // Weights of geometry to the right, below left, below, below right.
+  std::vector<Plane<float>> near_;
+  std::vector<Buffers> buffers_;
+};
+
+/// The variance of luminance around each pixel of one frame: over the 5 x 5 pixels that show a
+/// surface and are finite. For light without history.
+void variance_of_frame(const FrameInput& frame, const Planes<3>& light, Plane<float>& variance);
+
+}  // namespace eigenlight
