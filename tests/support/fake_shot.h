@@ -35,7 +35,7 @@ struct FakeShot {
     return paint(u, y, c) * light(u, y) + glow(u, y);
   }
 
-  /// Writes a frame: Combined, DiffDir, DiffCol, Emit, Normal, Depth, Vector, a matte that nothing
+  /// Writes a frame: Combined, DiffInd, DiffCol, Emit, Normal, Depth, Vector, a matte that nothing
   /// reads, and ids.
   void write(const std::filesystem::path& path, int frame) const;
 };
@@ -94,7 +94,7 @@ inline void FakeShot::write(const std::filesystem::path& path, int frame) const 
     file.add("View.Combined." + letter,
              [&](int x, int y, int u) { return paint(u, y, c) * noisy(x, y, u) + glow(u, y); });
     if (has_albedo) {
-      file.add("View.DiffDir." + letter, noisy);
+      file.add("View.DiffInd." + letter, noisy);
       file.add("View.DiffCol." + letter, [&](int, int y, int u) { return paint(u, y, c); });
       file.add("View.Emit." + letter, [&](int, int y, int u) { return glow(u, y); });
     }

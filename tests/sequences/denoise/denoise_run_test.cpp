@@ -79,7 +79,7 @@ TEST_F(DenoiseRun, PartsAddUpToTheBeauty) {
   run(settings());
   const ExrReader file(out(3));
   const auto beauty = file.read_planes<3>("View.Combined"),
-             light = file.read_planes<3>("View.DiffDir"),
+             light = file.read_planes<3>("View.DiffInd"),
              paint = file.read_planes<3>("View.DiffCol"), glow = file.read_planes<3>("View.Emit");
   for (int c = 0; c < 3; ++c) {
     for (int y = 0; y < 64; ++y) {
@@ -110,7 +110,7 @@ TEST_F(DenoiseRun, WhatIsNotDenoisedKeepsItsBits) {
     for (int y = 0; y < a.height(); ++y) {
       is_same = is_same && std::equal(a.row(y), a.row(y) + a.width(), b.row(y));
     }
-    const bool is_new = name.find("DiffDir") != std::string::npos ||
+    const bool is_new = name.find("DiffInd") != std::string::npos ||
                         (name.find("Combined") != std::string::npos && !name.ends_with(".A"));
     EXPECT_EQ(is_same, !is_new) << name;
     equal += is_same ? 1 : 0;
@@ -163,7 +163,7 @@ TEST_F(DenoiseRun, NanIsCountedAndReplaced) {
   shot.nan_pixels = 5;
   write(shot, 4);
   const DenoiseTotals totals = run(settings());
-  EXPECT_EQ(totals.not_finite.at("diffuse direct"), 4 * 5);
+  EXPECT_EQ(totals.not_finite.at("diffuse indirect"), 4 * 5);
   const Errors after = errors(shot, out(4), 4);
   EXPECT_TRUE(std::isfinite(after.square));
   EXPECT_NEAR(after.energy, 1.0, 0.02);
@@ -185,7 +185,7 @@ TEST_F(DenoiseRun, ALayerThatEndsIsNamed) {
   other.has_albedo = false;
   other.write(in(3), 3);
   EXPECT_THAT([&] { run(settings()); },
-              ThrowsMessage<BadFile>(HasSubstr("s.3.exr: no channel 'View.DiffDir.R'")));
+              ThrowsMessage<BadFile>(HasSubstr("s.3.exr: no channel 'View.DiffInd.R'")));
 }
 
 TEST_F(DenoiseRun, CutsDropHistory) {
