@@ -204,7 +204,7 @@ void Finder::check_light() {
     Planes<3> now;
     view_layer(frames_.front(), light.layer, now);
     if (const auto line = check_correlated_noise(now, guides_.front())) {
-      warn(fmt::format("{}: {}", name_for_people(*light.layer), *line));
+      warn(fmt::format("{}: {}", light.layer->name.empty() ? "color" : light.layer->name, *line));
     }
     if (frames_.size() < 2) continue;
     Planes<3> next;

@@ -64,8 +64,26 @@ std::string without_view(const std::string& name, const std::string& view) {
   return kept;
 }
 
-Named split(const ExrChannelInfo& channel) {
-  const std::string name = without_view(channel.full_name, channel.view);
+// A part that holds some letters of a color only: what its name says is not the name of a layer.
+bool is_piece(const std::vector<ExrChannelInfo>& channels, const ExrChannelInfo& one) {
+  const std::string prefix = one.name.substr(0, one.name.size() - 1);
+  if (one.name.empty() || kColor.find(one.name.back()) == std::string_view::npos) return false;
+  if (!prefix.empty() && prefix.back() != '.') return false;
+  int in_part = 0, in_file = 0;
+  for (const char letter : kColor) {
+    for (const ExrChannelInfo& other : channels) {
+      if (other.view != one.view || other.name != prefix + letter) continue;
+      ++in_file;
+      if (other.part == one.part) ++in_part;
+    }
+  }
+  // Each letter once: in a second part of that kind they would be another layer.
+  return in_part < 3 && in_file >= 3 && in_file <= 4;
+}
+
+Named split(const std::vector<ExrChannelInfo>& channels, const ExrChannelInfo& channel) {
+  const std::string name =
+      is_piece(channels, channel) ? channel.name : without_view(channel.full_name, channel.view);
   const std::size_t dot = name.rfind('.');
   const std::string last = dot == std::string::npos ? name : name.substr(dot + 1);
   const std::string prefix = dot == std::string::npos ? std::string() : name.substr(0, dot);
@@ -110,7 +128,7 @@ std::vector<FileLayer> list_layers(const ExrFile& file, int input) {
   const std::vector<ExrChannelInfo>& channels = file.channels();
   std::vector<Named> names;
   for (std::size_t i = 0; i < channels.size(); ++i) {
-    names.push_back(split(channels[i]));
+    names.push_back(split(channels, channels[i]));
     names.back().index = i;
   }
   std::vector<FileLayer> layers;

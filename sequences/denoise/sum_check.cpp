@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "frame/bad_file.h"
 #include "frame/frame.h"
 
 namespace eigenlight {
@@ -52,6 +53,19 @@ void drop_absent(const std::vector<RawFrame>& frames, ViewPlan& view, LayerPlan&
     sum.lights = std::move(lights);
   }
   view.lights = std::move(kept);
+}
+
+// All layers of light are 0: the beauty is all there is.
+void denoise_whole(ViewPlan& view, LayerPlan& plan) {
+  if (!view.beauty) {
+    throw BadFile(
+        "all layers of light are 0, and there is no beauty; say what to denoise with "
+        "--map beauty=LAYER");
+  }
+  view.sums.clear();
+  view.emission.clear();
+  view.lights.push_back({"beauty", view.beauty, view.albedo, false});
+  set_row(plan, *view.beauty, "denoised", "all layers of light are 0: as one layer");
 }
 
 // A sum that is not the sum of its parts is denoised for itself.
@@ -150,6 +164,10 @@ void refine_plan(const std::vector<RawFrame>& frames, LayerPlan& plan,
                  std::vector<std::string>& notes) {
   for (ViewPlan& view : plan.views) {
     drop_absent(frames, view, plan);
+    if (view.lights.empty()) {
+      denoise_whole(view, plan);
+      continue;
+    }
     for (std::size_t i = view.sums.size(); i-- > 0;) {
       refine_sum(frames.front(), view, i, plan, notes);
     }

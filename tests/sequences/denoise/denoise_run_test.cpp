@@ -179,6 +179,21 @@ TEST_F(DenoiseRun, BeautyAloneIsDenoised) {
   EXPECT_LT(errors(shot, out(8), 8).square, errors(shot, in(8), 8).square / 1.5);
 }
 
+TEST_F(DenoiseRun, WithoutLightInItsPartsTheBeautyIsOneLayer) {
+  Plane<float> some({32, 32}), none({32, 32});
+  some.fill(0.5f);
+  std::vector<ExrChannel> channels;
+  for (const char* c : {"R", "G", "B"}) {
+    channels.push_back({c, ExrType::kHalf, &some});
+    channels.push_back({std::string("diffuse_direct.") + c, ExrType::kHalf, &none});
+  }
+  write_exr(in(1), channels, {});
+  const DenoisePlan plan = plan_denoising(settings());
+  ASSERT_EQ(plan.layers.views.at(0).lights.size(), 1u);
+  EXPECT_EQ(plan.layers.views[0].lights[0].what, "beauty");
+  EXPECT_EQ(run(settings()).frames, 1u);
+}
+
 TEST_F(DenoiseRun, ALayerThatEndsIsNamed) {
   write({}, 3);
   FakeShot other;
