@@ -182,8 +182,7 @@ void SoftAtrous::find_means(const SoftLayer& layer, Buffers& buffer, int y) cons
     const float over = sum > 0.0f ? 1.0f / sum : 0.0f;
     buffer.mean(x, y) = mean * over;
     const float deviation = std::sqrt(std::max(spread * over * squares * over * over, 0.0f));
-    buffer.tolerance(x, y) =
-        1.0f / (layer.sigmas * deviation + 1e-4f * std::abs(mean * over) + 1e-6f);
+    buffer.tolerance(x, y) = layer.sigmas * deviation + 1e-4f * std::abs(mean * over) + 1e-6f;
   }
 }
 
@@ -201,7 +200,7 @@ void SoftAtrous::start_row(const SoftLayer& layer, Buffers& out, int y) const {
 void SoftAtrous::add_tap(const SoftLayer& layer, const TapRow& tap, Buffers& out) const {
   const int y = tap.y, q = tap.y + tap.dy;
   const float *mean = out.mean.row(y), *other = out.mean.row(q) + tap.dx;
-  const float* tolerance = out.tolerance.row(y);
+  const float *tolerance = out.tolerance.row(y), *others = out.tolerance.row(q) + tap.dx;
   const float* usable = out.usable.row(q) + tap.dx;
   const float* variance = layer.variance->row(q) + tap.dx;
   const Planes<3>& in = *layer.light;
@@ -210,7 +209,7 @@ void SoftAtrous::add_tap(const SoftLayer& layer, const TapRow& tap, Buffers& out
   float *to_variance = out.variance.row(y), *sum = out.sum.row(y);
   for (int x = tap.x0; x < tap.x1; ++x) {
     const float w = tap.kernel * tap.geometry[x] * usable[x] *
-                    falloff(std::abs(mean[x] - other[x]) * tolerance[x]);
+                    falloff(std::abs(mean[x] - other[x]) * 2.0f / (tolerance[x] + others[x]));
     sum[x] += w;
     to_r[x] += w * r[x];
     to_g[x] += w * g[x];

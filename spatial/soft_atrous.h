@@ -37,11 +37,13 @@ struct SoftLayer {
 /// with the variance of such a mean, in place of single pixels: an outlier is unlike all its
 /// neighbors, and would keep its light to itself.
 ///   out(p) = sum_q k(q) w(p, q) c(q) / sum_q k(q) w(p, q),
-///   w = g(p, q) * e(|l_p - l_q| / (sigmas * sigma_p + 1e-4 |l_p| + 1e-6)),
-/// k binomial (radius 1) or B3 spline weights (radius 2), e(x) = (1 - x/8)^8 up to x = 8, then 0.
-/// Variances follow: var(p) = sum (k w)^2 var(q) / (sum k w)^2. The weight of a pixel itself is
-/// k(0). Pixels without surface (id 0), or whose light or variance is not finite, give nothing;
-/// such a pixel of a surface takes what its neighbors give it.
+///   w = g(p, q) * e(2 |l_p - l_q| / (d_p + d_q)),   d = sigmas * sigma + 1e-4 |l| + 1e-6,
+/// the same for p in the sum of q: with d_p alone dark pixels, whose noise is small, refuse bright
+/// ones, and these accept them, which costs 2 % of the light of skewed noise. k binomial (radius 1)
+/// or B3 spline weights (radius 2), e(x) = (1 - x/8)^8 up to x = 8, then 0. Variances follow:
+/// var(p) = sum (k w)^2 var(q) / (sum k w)^2. The weight of a pixel itself is k(0). Pixels without
+/// surface (id 0), or whose light or variance is not finite, give nothing; such a pixel of a
+/// surface takes what its neighbors give it.
 ///
 /// Weights of geometry are calculated once for all layers.
 class SoftAtrous {
@@ -56,7 +58,7 @@ class SoftAtrous {
  private:
   struct Buffers {
     Planes<3> light;
-    // tolerance: 1 over the difference of luminance that counts as the same light.
+    // tolerance: d, the difference of luminance that counts as the same light.
     Plane<float> variance, mean, tolerance, usable, sum;
   };
   // One neighbor of a row of pixels.

@@ -13,7 +13,7 @@ struct SoftOptions {
   SoftAtrousOptions filter;
   /// (0, 100] standard deviations that count as the same light: of estimates over many frames, and
   /// of direct light, which is filtered frame by frame.
-  float sigmas = 5.0f, direct_sigmas = 3.0f;
+  float sigmas = 7.0f, direct_sigmas = 3.0f;
 
   SoftOptions();
 };

@@ -83,7 +83,9 @@ class SoftFilter {
         options_.radius == 1 ? std::vector<double>{0.25, 0.5, 0.25}
                              : std::vector<double>{1 / 16.0, 0.25, 0.375, 0.25, 1 / 16.0};
     const auto own = mean(in, x, y);
-    const double tolerance = sigmas * std::sqrt(own[1]) + 1e-4 * std::abs(own[0]) + 1e-6;
+    const auto tolerance = [&](const std::array<double, 2>& m) {
+      return sigmas * std::sqrt(m[1]) + 1e-4 * std::abs(m[0]) + 1e-6;
+    };
     std::array<double, 4> result{};
     double sum = 0.0;
     for (int j = -options_.radius; j <= options_.radius; ++j) {
@@ -93,7 +95,9 @@ class SoftFilter {
         double w = kernel[static_cast<std::size_t>(i + options_.radius)] *
                    kernel[static_cast<std::size_t>(j + options_.radius)];
         if (i != 0 || j != 0) {
-          w *= geometry(x, y, qx, qy) * falloff(std::abs(mean(in, qx, qy)[0] - own[0]) / tolerance);
+          const auto other = mean(in, qx, qy);
+          w *= geometry(x, y, qx, qy) *
+               falloff(2.0 * std::abs(other[0] - own[0]) / (tolerance(own) + tolerance(other)));
         }
         sum += w;
         for (std::size_t c = 0; c < 3; ++c) result[c] += w * in.at(qx, qy)[c];
