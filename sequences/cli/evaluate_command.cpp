@@ -112,15 +112,16 @@ void add_inputs(CLI::App& command, EvaluateOptions& options) {
       ->required();
   command
       .add_option("-r,--reference", options.reference,
-                  "Images of the truth: a pattern, or one file")
+                  "Images of the truth: a pattern, or one file; NAME.exr:HalfA for layers HalfA.*")
       ->required();
   command.add_option("--reference-b", options.reference_b,
                      "Second, independent reference; removes the noise of both references from "
                      "the figures");
   command.add_option("--reference-noise", options.metrics.reference_noise,
                      "relMSE of a single reference, subtracted from relmse");
-  command.add_option("-l,--layer", options.layer, "Layer of the reference; \"\" or color: R, G, B")
-      ->capture_default_str();
+  command.add_option("-l,--layer", options.layer,
+                     "Layer of the reference; \"\" or color: R, G, B or the beauty [indirect, or "
+                     "the beauty of files that have none]");
   command.add_option("--test-layer", options.test_layer,
                      "Layer of the test, if its name differs from --layer");
   command.add_option("--frames", options.frames, "Such as 40-59 or 1-10,20 [all that exist]");

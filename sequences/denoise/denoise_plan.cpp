@@ -14,7 +14,7 @@ namespace {
 // Frames that readings are found on: two steps of motion tell more than one.
 constexpr std::size_t kFirstFrames = 3;
 
-std::vector<FileLayer> layers_of(const FramePaths& frame) {
+std::vector<FileLayer> layers_of(const FrameFiles& frame) {
   std::vector<FileLayer> layers;
   for (std::size_t i = 0; i < frame.inputs.size(); ++i) {
     const ExrFile file(frame.inputs[i]);
@@ -25,7 +25,7 @@ std::vector<FileLayer> layers_of(const FramePaths& frame) {
 }
 
 // Pixels that the denoiser can hold; the file is to blame, not the user.
-void check_canvas(const ExrWindow& canvas, const std::vector<FramePaths>& frames) {
+void check_canvas(const ExrWindow& canvas, const std::vector<FrameFiles>& frames) {
   EL_CHECK(canvas.width >= 1 && canvas.height >= 1 && canvas.width <= kMaxSide &&
                canvas.height <= kMaxSide,
            "{}: data windows cover {}x{} pixels: each side must be in [1, {}]",

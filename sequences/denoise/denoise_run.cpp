@@ -47,7 +47,7 @@ std::string describe(const DenoiseSettings& settings, const DenoisePlan& plan) {
   json["camera"] = settings.guides.camera;
   json["cuts"] = plan.cuts;
   json["canvas"] = {plan.canvas.x, plan.canvas.y, plan.canvas.width, plan.canvas.height};
-  for (const FramePaths& frame : plan.frames) json["frames"].push_back(frame.frame);
+  for (const FrameFiles& frame : plan.frames) json["frames"].push_back(frame.frame);
   return json.dump();
 }
 
@@ -124,7 +124,7 @@ void Run::add_notes(const std::vector<std::string>& lines) {
 }
 
 void Run::write_frame(const FinishedFrame& frame) {
-  const FramePaths& paths = plan_.frames[frame.index];
+  const FrameFiles& paths = plan_.frames[frame.index];
   for (std::size_t i = 0; i < paths.outputs.size(); ++i) {
     std::vector<ExrReplacement> replacements;
     for (const NewChannel& channel : frame.outputs[i]) {

@@ -26,7 +26,7 @@ struct DenoiseSettings {
 
 /// All that is known before the first frame is denoised.
 struct DenoisePlan {
-  std::vector<FramePaths> frames;
+  std::vector<FrameFiles> frames;
   LayerPlan layers;
   ExrWindow canvas;
   std::vector<Readings> readings;  ///< of each view

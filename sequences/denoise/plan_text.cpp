@@ -14,7 +14,7 @@ using Json = nlohmann::ordered_json;
 
 std::vector<int> numbers(const DenoisePlan& plan) {
   std::vector<int> frames;
-  for (const FramePaths& frame : plan.frames) frames.push_back(frame.frame);
+  for (const FrameFiles& frame : plan.frames) frames.push_back(frame.frame);
   return frames;
 }
 

@@ -139,9 +139,9 @@ std::vector<int> channel_indices(const ExrFile& file, const std::string& path,
   return indices;
 }
 
-ExrWindow find_canvas(const std::vector<FramePaths>& frames, const LayerPlan& plan) {
+ExrWindow find_canvas(const std::vector<FrameFiles>& frames, const LayerPlan& plan) {
   ExrWindow canvas{0, 0, 0, 0};
-  for (const FramePaths& frame : frames) {
+  for (const FrameFiles& frame : frames) {
     for (const ViewPlan& view : plan.views) {
       const FileLayer& light = first_light(view);
       const auto& path = frame.inputs[static_cast<std::size_t>(light.input)];
@@ -152,7 +152,7 @@ ExrWindow find_canvas(const std::vector<FramePaths>& frames, const LayerPlan& pl
   return canvas;
 }
 
-RawFrame read_raw_frame(const FramePaths& paths, const LayerPlan& plan, const ExrWindow& canvas) {
+RawFrame read_raw_frame(const FrameFiles& paths, const LayerPlan& plan, const ExrWindow& canvas) {
   RawFrame frame;
   frame.frame = paths.frame;
   std::vector<std::string> names;

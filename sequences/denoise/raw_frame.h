@@ -39,12 +39,12 @@ class RawFrame {
 
 /// The smallest window that holds all pixels of light of all frames, in display coordinates. Reads
 /// the headers of all files. Throws BadFile naming the first file that lacks a layer of the plan.
-[[nodiscard]] ExrWindow find_canvas(const std::vector<FramePaths>& frames, const LayerPlan& plan);
+[[nodiscard]] ExrWindow find_canvas(const std::vector<FrameFiles>& frames, const LayerPlan& plan);
 
 /// Reads the layers of `plan` and places them on the canvas. Throws BadFile naming file and layer
 /// if a layer is missing or has fewer channels than in the first frame; std::runtime_error if a
 /// file cannot be read.
-[[nodiscard]] RawFrame read_raw_frame(const FramePaths& paths, const LayerPlan& plan,
+[[nodiscard]] RawFrame read_raw_frame(const FrameFiles& paths, const LayerPlan& plan,
                                       const ExrWindow& canvas);
 
 /// Index of a layer's channels in a file. Throws BadFile naming file and channel if one is missing.

@@ -72,12 +72,12 @@ fs::path real(const fs::path& path) {
   return error ? fs::absolute(path).lexically_normal() : full;
 }
 
-void check_outputs(const std::vector<FramePaths>& frames, bool overwrite) {
+void check_outputs(const std::vector<FrameFiles>& frames, bool overwrite) {
   std::set<fs::path> inputs, outputs;
-  for (const FramePaths& frame : frames) {
+  for (const FrameFiles& frame : frames) {
     for (const fs::path& path : frame.inputs) inputs.insert(real(path));
   }
-  for (const FramePaths& frame : frames) {
+  for (const FrameFiles& frame : frames) {
     for (const fs::path& path : frame.outputs) {
       if (!outputs.insert(real(path)).second) {
         throw std::invalid_argument(
@@ -94,7 +94,7 @@ void check_outputs(const std::vector<FramePaths>& frames, bool overwrite) {
 
 }  // namespace
 
-std::vector<FramePaths> find_sequence(const FileChoice& choice) {
+std::vector<FrameFiles> find_sequence(const FileChoice& choice) {
   std::vector<Name> inputs;
   for (const std::string& text : choice.inputs) inputs.push_back(parse_name(text));
   const bool to_file = is_exr(choice.output);
@@ -105,9 +105,9 @@ std::vector<FramePaths> find_sequence(const FileChoice& choice) {
   const Name output = to_file ? parse_name(choice.output) : Name{choice.output, std::nullopt};
   const std::vector<int> frames =
       choice.frames.empty() ? existing_frames(inputs.front()) : parse_frame_range(choice.frames);
-  std::vector<FramePaths> sequence;
+  std::vector<FrameFiles> sequence;
   for (const int frame : frames) {
-    FramePaths paths;
+    FrameFiles paths;
     paths.frame = frame;
     for (const Name& input : inputs) {
       const fs::path in = input.file(frame);

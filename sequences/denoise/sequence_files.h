@@ -16,7 +16,7 @@ struct FileChoice {
 };
 
 /// One frame: for each input the file that is read, and the one that is written.
-struct FramePaths {
+struct FrameFiles {
   int frame = 0;
   std::vector<std::filesystem::path> inputs, outputs;
 };
@@ -28,6 +28,6 @@ struct FramePaths {
 /// Throws std::invalid_argument if a pattern has no place for the frame number, an output is an
 /// input and `overwrite` is false, two frames have one output, or several inputs have an output
 /// that is no folder; BadFile naming the first file that is missing.
-[[nodiscard]] std::vector<FramePaths> find_sequence(const FileChoice& choice);
+[[nodiscard]] std::vector<FrameFiles> find_sequence(const FileChoice& choice);
 
 }  // namespace eigenlight

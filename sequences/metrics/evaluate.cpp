@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -22,9 +23,15 @@ namespace fs = std::filesystem;
 // The files of one sequence by frame number, or one file, which counts as frame 0.
 class Sequence {
  public:
-  explicit Sequence(const std::string& text) : text_(text), name_(fs::path(text).filename()) {
-    if (name_.find_first_of("#@%") != std::string::npos) pattern_.emplace(name_);
+  explicit Sequence(const std::string& text) : text_(text) {
+    split_prefix();
+    name_ = fs::path(text_).filename();
+    std::error_code error;
+    const bool is_file = fs::is_regular_file(text_, error);
+    if (!is_file && name_.find_first_of("#@%") != std::string::npos) pattern_.emplace(name_);
   }
+  /// What layers begin with, or empty.
+  [[nodiscard]] const std::string& prefix() const { return prefix_; }
   [[nodiscard]] bool is_single() const { return !pattern_; }
   [[nodiscard]] const std::string& text() const { return text_; }
   [[nodiscard]] fs::path path(int frame) const {
@@ -45,7 +52,15 @@ class Sequence {
   }
 
  private:
-  std::string text_, name_;
+  void split_prefix() {
+    const std::size_t colon = text_.rfind(".exr:");
+    std::error_code error;
+    if (colon == std::string::npos || fs::is_regular_file(text_, error)) return;
+    prefix_ = text_.substr(colon + 5);
+    text_.resize(colon + 4);
+  }
+
+  std::string text_, name_, prefix_;
   std::optional<FilePattern> pattern_;
 };
 
@@ -103,8 +118,9 @@ std::map<int, std::string> missing_files(const std::vector<int>& frames,
 }
 
 FramePaths paths_of(int frame, const std::vector<Sequence>& sequences) {
-  FramePaths paths{sequences[0].path(frame), sequences[1].path(frame), {}};
+  FramePaths paths{sequences[0].path(frame), sequences[1].path(frame), {}, {}};
   if (sequences.size() > 2) paths.reference_b = sequences[2].path(frame);
+  for (std::size_t i = 0; i < sequences.size(); ++i) paths.prefixes[i] = sequences[i].prefix();
   return paths;
 }
 
@@ -126,11 +142,22 @@ std::vector<LightLevel> light_levels(const std::vector<FrameFigures>& frames) {
   return levels;
 }
 
+// Frames from one to the next where the list has no gap.
+int step_of(const std::vector<int>& frames) {
+  int step = 1;
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    const int gap = std::abs(frames[i] - frames[i - 1]);
+    step = i == 1 ? gap : std::min(step, gap);
+  }
+  return step;
+}
+
 // Reads and measures frame after frame.
 class Evaluator {
  public:
-  explicit Evaluator(const EvaluateOptions& options)
-      : options_(options), metrics_(options.metrics) {
+  /// `step`: of neighboring frames; others are not compared with one another.
+  Evaluator(const EvaluateOptions& options, int step)
+      : options_(options), metrics_(options.metrics), step_(step) {
     result_.metrics = options.metrics;
     result_.step = options.step;
   }
@@ -142,15 +169,15 @@ class Evaluator {
       result_.bad_pixels += loaded.bad_pixels;
     }
     if (!result_.step && result_.frames.empty()) result_.step = loaded.step;
-    loaded.images.follows = follows_;
+    loaded.images.follows = last_ && std::abs(frame - *last_) == step_;
     result_.frames.push_back(metrics_.add(std::move(loaded.images)));
     result_.surface_from = loaded.surface_from;
     result_.age_from = loaded.age_from;
-    follows_ = true;
+    last_ = frame;
   }
   void skip(int frame, std::string reason) {
     result_.skipped.push_back({frame, std::move(reason)});
-    follows_ = false;
+    last_.reset();
   }
   [[nodiscard]] Evaluation finish() && {
     if (result_.frames.empty()) {
@@ -167,7 +194,8 @@ class Evaluator {
   const EvaluateOptions& options_;
   SequenceMetrics metrics_;
   Evaluation result_;
-  bool follows_ = false;
+  int step_;
+  std::optional<int> last_;  // frame that was measured last
 };
 
 }  // namespace
@@ -180,7 +208,7 @@ Evaluation evaluate(const EvaluateOptions& given) {
   const auto missing = missing_files(frames, sequences);
   if (!missing.empty() && !options.skips_bad) fail_missing(missing, frames.size());
 
-  Evaluator evaluator(options);
+  Evaluator evaluator(options, step_of(frames));
   for (const int frame : frames) {
     if (const auto found = missing.find(frame); found != missing.end()) {
       evaluator.skip(frame, found->second);

@@ -11,12 +11,14 @@
 
 namespace eigenlight {
 
-/// What to compare. File names are patterns (file_pattern.h), or plain names for one image.
+/// What to compare. File names are patterns (file_pattern.h), or plain names for one image. Behind
+/// a colon may stand what layer names begin with: of `ref.####.exr:HalfA` the layers `HalfA.*`.
 struct EvaluateOptions {
   std::string test;
   std::string reference;
-  std::string reference_b;                ///< second, independent reference; empty: none
-  std::string layer = "indirect";         ///< of the references
+  std::string reference_b;  ///< second, independent reference; empty: none
+  /// Of the references; absent: `indirect`, or the beauty of files that have none.
+  std::optional<std::string> layer;
   std::optional<std::string> test_layer;  ///< of the test; the same as `layer` if absent
   std::string frames;                     ///< frame_range.h; empty: all that any sequence has
   /// First frame of a light step; absent: as the file of the first frame has it
@@ -48,6 +50,8 @@ struct Evaluation {
 /// is not 0, else where `Z` is finite and below 1e10 (what Cycles writes for the background); from
 /// the test, else from the first reference, else all pixels count. Ages are the layer `age`, found
 /// the same way. PNG and JPEG hold display values and have no layers; they compare with their like.
+///
+/// Temporal figures compare neighbors: frames as far apart as the nearest two of the list.
 ///
 /// Bad: a missing or unreadable file, a missing layer, images of different size, pixels with NaN or
 /// Inf. Throws std::runtime_error with one line that names the file of the first bad frame and

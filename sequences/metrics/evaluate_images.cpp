@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "sequences/files/exr_io.h"
+#include "sequences/files/exr_layers.h"
 #include "sequences/files/ldr_image.h"
 #include "sequences/files/perturbation.h"
 
@@ -24,14 +26,34 @@ struct Source {
   std::optional<ExrReader> reader;  // none for 8-bit pictures
 };
 
-Source open_source(const std::filesystem::path& path, const std::string& layer) {
+// The name by which the file has the layer that was asked for.
+std::string layer_of(const ExrReader& reader, const std::string& asked, const std::string& prefix) {
+  if (prefix.empty()) return asked;
+  std::vector<std::string> layers;
+  for (const std::string& layer : reader.layers()) {
+    if (layer.starts_with(prefix + '.')) layers.push_back(layer.substr(prefix.size() + 1));
+  }
+  return prefix + '.' + find_layer(layers, asked).value_or(asked);
+}
+
+// The layer that is measured where none was asked for.
+std::string default_layer(const std::filesystem::path& reference, const std::string& prefix) {
+  if (is_ldr_name(reference)) return {};
+  const ExrReader reader(reference);
+  const std::vector<std::string>& layers = reader.layers();
+  const std::string ours = prefix.empty() ? "indirect" : prefix + ".indirect";
+  return std::find(layers.begin(), layers.end(), ours) != layers.end() ? "indirect" : "color";
+}
+
+Source open_source(const std::filesystem::path& path, const std::string& layer,
+                   const std::string& prefix) {
   Source source;
   source.path = path.string();
   if (is_ldr_name(path)) {
     source.colors = read_ldr_image(path);
   } else {
     source.reader.emplace(path);
-    source.colors = source.reader->read_planes<3>(layer);
+    source.colors = source.reader->read_planes<3>(layer_of(*source.reader, layer, prefix));
   }
   return source;
 }
@@ -134,13 +156,15 @@ void mark_finite(const std::vector<Source*>& sources, LoadedFrame& out) {
 }  // namespace
 
 LoadedFrame load_frame(int frame, const FramePaths& paths, const EvaluateOptions& options) {
-  Source test = open_source(paths.test, options.test_layer.value_or(options.layer));
-  Source reference = open_source(paths.reference, options.layer);
+  const std::string layer =
+      options.layer ? *options.layer : default_layer(paths.reference, paths.prefixes[1]);
+  Source test = open_source(paths.test, options.test_layer.value_or(layer), paths.prefixes[0]);
+  Source reference = open_source(paths.reference, layer, paths.prefixes[1]);
   check_size(test, reference);
   std::vector<Source*> sources{&test, &reference};
   std::optional<Source> reference_b;
   if (!paths.reference_b.empty()) {
-    reference_b = open_source(paths.reference_b, options.layer);
+    reference_b = open_source(paths.reference_b, layer, paths.prefixes[2]);
     check_size(test, *reference_b);
     sources.push_back(&*reference_b);
   }

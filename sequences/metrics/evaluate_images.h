@@ -1,6 +1,7 @@
 // The images of one frame that is to be measured.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -14,6 +15,8 @@ namespace eigenlight {
 struct FramePaths {
   std::filesystem::path test, reference;
   std::filesystem::path reference_b;  ///< empty: none
+  /// What the layers begin with in the test, the reference and the second reference.
+  std::array<std::string, 3> prefixes;
 };
 
 struct LoadedFrame {

@@ -170,6 +170,23 @@ def header_faults(name, lines):
         yield f"{name}:1: no #pragma once"
 
 
+TYPE = re.compile(r"(?:struct|class) (\w+)(?: final)?(?: : [^;]*)? \{")
+
+
+def type_faults(sources):
+    """Two headers that define one name: no compiler sees both, and the linker takes either."""
+    homes = collections.defaultdict(list)
+    for name, lines in sources.items():
+        if not name.endswith(".h") or name.startswith("tests/"):
+            continue
+        for number, line in enumerate(lines, 1):
+            if match := TYPE.match(line):
+                homes[match.group(1)].append(f"{name}:{number}")
+    for title, places in sorted(homes.items()):
+        for place in places[1:]:
+            yield f"{place}: {title} is defined in {places[0]} as well"
+
+
 def stem(name):
     """The name of a source without folder, ending, and what kernel files add to it."""
     return re.sub(r"(_kernel|_simd|_test)?\.(h|cpp)$", "", name.rpartition("/")[2])
@@ -237,6 +254,7 @@ def faults(root):
         yield f"{root}: no source file found"
     yield from crowding_faults(names)
     yield from kernel_faults(sources)
+    yield from type_faults(sources)
     yield from flag_faults(root)
     yield from format_faults(root, names)
 

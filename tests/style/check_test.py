@@ -13,7 +13,7 @@ import check  # noqa: E402
 GOOD = {
     "frame/plane.h": "#pragma once\n",
     "temporal/mean.cpp": '#include "frame/plane.h"\n#include "temporal/mean.h"\n#include <vector>\n',
-    "temporal/mean.h": "#pragma once\n",
+    "temporal/mean.h": "#pragma once\nclass Mean {\n};\n",
     "spatial/blur_simd.cpp": '#include "spatial/blur_kernel.h"\n#include <hwy/highway.h>\nHWY_EXPORT(Blur);\n',
     "tests/spatial/blur_test.cpp": '#include "spatial/blur.h"\nEL_KERNEL_TEST(Blur, MatchesTheReference) {}\n',
     "spatial/blur-inl.h": "#include <hwy/highway.h>\n",
@@ -52,6 +52,7 @@ class CheckTest(unittest.TestCase):
             ("sequences/x.cpp", "#include <OpenImageIO/imageio.h>\n", "belongs in"),
             ("frame/x.cpp", "\n" * 301, "longer than 300 lines"),
             ("frame/x.h", "\n", "no #pragma once"),
+            ("temporal/x.h", "#pragma once\nstruct Mean final : Base {\n};\n", "Mean is defined in temporal/mean.h"),
             ("spatial/sharpen_simd.cpp", '#include "spatial/sharpen.h"\nHWY_EXPORT(Sharpen);\n',
              "no EL_KERNEL_TEST in tests/spatial/ includes its header"),
             ("frame/CMakeLists.txt", "add_compile_options(-march=native)\n", "changes floating"),

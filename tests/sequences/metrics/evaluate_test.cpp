@@ -45,6 +45,43 @@ TEST_F(EvaluateTest, BareLayersTakeSetsFromTheReference) {
   }
 }
 
+TEST_F(EvaluateTest, HalvesOfOneFileAreNamedBehindAColon) {
+  write_fake_image(dir_ / "test.exr", {.value = 0.75f, .layer = "ViewLayer.Combined."});
+  write_fake_image(dir_ / "ref.exr", {.value = 0.5f, .layer = "HalfA.Combined."});
+  write_fake_image(dir_ / "other.exr", {.value = 0.7f, .layer = "HalfB.DiffDir."});
+  EvaluateOptions o;
+  o.test = (dir_ / "test.exr").string();
+  o.reference = (dir_ / "ref.exr:HalfA").string();
+  EXPECT_NEAR(evaluate(o).mean[0][Metric::kMse].value(), 0.0625, 1e-12);
+  o.reference = (dir_ / "other.exr:HalfB").string();
+  expect_failure(o, AllOf(HasSubstr("other.exr"), HasSubstr("no layer 'HalfB.color'")));
+  o.layer = "direct";
+  o.test_layer = "color";
+  EXPECT_NEAR(evaluate(o).mean[0][Metric::kMse].value(), 0.0025, 1e-7);
+}
+
+TEST_F(EvaluateTest, FramesAcrossAGapAreNotCompared) {
+  for (const char* frame : {"0011", "0012"}) {
+    write_fake_image(file("t", frame), {.value = 0.9f, .has_masks = true});
+    write_fake_image(file("r", frame), {});
+  }
+  EvaluateOptions o = options();
+  o.frames = "1,2,11,12";
+  const Evaluation e = evaluate(o);
+  EXPECT_EQ(e.frames[1][PixelSet::kSurface][Metric::kTemporalError].value(), 0.0);
+  EXPECT_FALSE(e.frames[2][PixelSet::kSurface][Metric::kTemporalError].has_value());
+  o.frames = "1,3";  // every second frame: these are neighbors
+  EXPECT_TRUE(evaluate(o).mean[0][Metric::kTemporalError].has_value());
+}
+
+TEST_F(EvaluateTest, AFileOfThatNameIsNoPattern) {
+  write_fake_image(dir_ / "shot@2x.exr", {.value = 0.75f});
+  EvaluateOptions o;
+  o.test = (dir_ / "shot@2x.exr").string();
+  o.reference = file("r", "0001").string();
+  EXPECT_NEAR(evaluate(o).mean[0][Metric::kMse].value(), 0.0625, 1e-12);
+}
+
 TEST_F(EvaluateTest, MissingFramesAreNamedAndCounted) {
   std::filesystem::remove(file("t", "0002"));
   EvaluateOptions o = options();
