@@ -10,6 +10,7 @@
 
 #include "sequences/files/atomic_file.h"
 #include "sequences/files/compose.h"
+#include "sequences/files/directory.h"
 #include "sequences/files/exr_io.h"
 #include "sequences/files/file_pattern.h"
 #include "sequences/runs/render_plan.h"
@@ -39,14 +40,6 @@ std::string directory_name(const ReferenceIdentity& identity, const std::string&
   const std::uint64_t hash = XXH3_64bits(description.data(), description.size());
   return fmt::format("{}-{}x{}-{}spp-{:016x}", identity.scene, identity.extent.width,
                      identity.extent.height, identity.spp, hash);
-}
-
-void make_directory(const std::filesystem::path& path) {
-  std::error_code error;
-  std::filesystem::create_directories(path, error);
-  if (std::filesystem::is_directory(path)) return;
-  throw std::runtime_error(fmt::format("{}: cannot make the directory: {}", path.string(),
-                                       error ? error.message() : "Not a directory"));
 }
 
 std::uint64_t hash_rows(const Planes<3>& planes) {

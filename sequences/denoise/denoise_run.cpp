@@ -235,7 +235,7 @@ void Run::finish() {
   for (std::size_t v = 0; v < builders_.size(); ++v) {
     const ViewPlan& view = plan_.layers.views[v];
     for (std::size_t i = 0; i < view.lights.size(); ++i) {
-      const std::int64_t count = builders_[v].counts().not_finite[i];
+      const std::int64_t count = builders_[v].not_finite()[i];
       if (count > 0) totals_.not_finite[view.lights[i].what] += count;
     }
   }

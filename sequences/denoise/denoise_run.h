@@ -32,7 +32,6 @@ struct DenoisePlan {
   std::vector<Readings> readings;  ///< of each view
   std::vector<int> cuts;
   std::vector<std::string> notes, warnings;
-  double bytes_per_pixel = 0.0;  ///< of the canvas, at most
 };
 
 /// Looks at the first frames. Throws std::invalid_argument and BadFile as its parts do.

@@ -199,6 +199,10 @@ void Finder::check_light() {
         "beauty: the renderer has denoised it already (there is a Noisy Image); layers of light "
         "are used, not it");
   }
+  Planes<2> motion;
+  if (readings_.motion && guides_.size() >= 2) {
+    apply_motion(guides_[1], &guides_[0], *readings_.motion, motion);
+  }
   for (const PlannedLight& light : view_.lights) {
     if (!light.layer) continue;
     Planes<3> now;
@@ -209,8 +213,6 @@ void Finder::check_light() {
     if (frames_.size() < 2) continue;
     Planes<3> next;
     view_layer(frames_[1], light.layer, next);
-    Planes<2> motion;
-    if (readings_.motion) apply_motion(guides_[1], &guides_[0], *readings_.motion, motion);
     if (const auto line = check_frozen_seeds(now, next, motion)) {
       warn(fmt::format("{}: {}", name_for_people(*light.layer), *line));
     }

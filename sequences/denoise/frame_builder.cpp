@@ -88,7 +88,7 @@ std::int64_t count_not_finite(const Planes<3>& planes) {
 FrameBuilder::FrameBuilder(const ViewPlan& view, const Readings& readings, const ExrWindow& canvas,
                            std::vector<int> cuts)
     : view_(view), readings_(readings), canvas_(canvas), cuts_(std::move(cuts)) {
-  counts_.not_finite.resize(view.lights.size());
+  not_finite_.resize(view.lights.size());
 }
 
 bool FrameBuilder::has_history(int frame) const {
@@ -149,7 +149,7 @@ void FrameBuilder::build_lights(const RawFrame& raw, Frame& out) {
         });
       }
     }
-    counts_.not_finite[i] += count_not_finite(radiance);
+    not_finite_[i] += count_not_finite(radiance);
   }
 }
 
@@ -178,10 +178,7 @@ void FrameBuilder::build_motion(const RawGuides& guides, Frame& out) {
   const bool has_cameras = camera_now_ && camera_before_;
   const bool is_known = readings_.motion || has_cameras || readings_.is_still;
   out.previous_index = -1;
-  if (!has_history(guides.frame) || !is_known) {
-    ++counts_.cuts;
-    return;
-  }
+  if (!has_history(guides.frame) || !is_known) return;
   out.previous_index = raw_before_->frame;
   const CameraPair cameras{out.camera, camera_before_.value_or(out.camera)};
   if (!readings_.motion) {

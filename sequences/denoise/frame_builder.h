@@ -10,12 +10,6 @@
 
 namespace eigenlight {
 
-/// What a builder counts over a sequence.
-struct BuilderCounts {
-  std::vector<std::int64_t> not_finite;  ///< pixels of each layer of light with NaN or Inf
-  int cuts = 0;                          ///< frames whose history was dropped
-};
-
 /// Builds the frames of one view, in the order of the sequence.
 ///
 /// - Light is divided by its color where the file does not do so, and by kSmallestColor where that
@@ -24,7 +18,8 @@ struct BuilderCounts {
 ///   faces the camera, so that its noise is removed as well; without light it is no surface.
 /// - Pixels outside the data window are absent: no surface and no light.
 /// - Without a layer of depth all surfaces are at depth 1, without normals they face the camera.
-/// - Without a camera a frame has that of kAssumedView, at rest. Only distances from the planes of
+/// - Without a camera a frame has one with a view of 53 degrees, at rest. Only distances from the
+/// planes of
 ///   surfaces depend on it.
 class FrameBuilder {
  public:
@@ -35,7 +30,8 @@ class FrameBuilder {
   /// Fills `out`, reusing its planes. `previous_index` of the first frame is -1.
   void build(const std::shared_ptr<const RawFrame>& raw, Frame& out);
 
-  [[nodiscard]] const BuilderCounts& counts() const { return counts_; }
+  /// Pixels with NaN or Inf in all frames so far, of each layer of light.
+  [[nodiscard]] const std::vector<std::int64_t>& not_finite() const { return not_finite_; }
 
  private:
   void build_surface(const RawFrame& raw, const RawGuides& guides, Frame& out);
@@ -48,7 +44,7 @@ class FrameBuilder {
   const Readings& readings_;
   ExrWindow canvas_;
   std::vector<int> cuts_;
-  BuilderCounts counts_;
+  std::vector<std::int64_t> not_finite_;
 
   // Of the frame before.
   std::shared_ptr<const RawFrame> raw_before_;

@@ -1,30 +1,32 @@
 #include "sequences/denoise/layer_names.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <map>
-#include <stdexcept>
-#include <utility>
+
+#include "frame/named.h"
 
 namespace eigenlight {
 namespace {
 
-constexpr std::array<std::pair<Role, std::string_view>, 13> kRoles{{{Role::kBeauty, "beauty"},
-                                                                    {Role::kLight, "light"},
-                                                                    {Role::kEmission, "emission"},
-                                                                    {Role::kColor, "color"},
-                                                                    {Role::kAlbedo, "albedo"},
-                                                                    {Role::kNormal, "normal"},
-                                                                    {Role::kDepth, "depth"},
-                                                                    {Role::kPosition, "position"},
-                                                                    {Role::kMotion, "motion"},
-                                                                    {Role::kId, "id"},
-                                                                    {Role::kVariance, "variance"},
-                                                                    {Role::kNoisy, "noisy"},
-                                                                    {Role::kOther, "other"}}};
+struct NamedRole {
+  Role role;
+  std::string_view name;
+};
+constexpr std::array<NamedRole, 13> kRoles{{{Role::kBeauty, "beauty"},
+                                            {Role::kLight, "light"},
+                                            {Role::kEmission, "emission"},
+                                            {Role::kColor, "color"},
+                                            {Role::kAlbedo, "albedo"},
+                                            {Role::kNormal, "normal"},
+                                            {Role::kDepth, "depth"},
+                                            {Role::kPosition, "position"},
+                                            {Role::kMotion, "motion"},
+                                            {Role::kId, "id"},
+                                            {Role::kVariance, "variance"},
+                                            {Role::kNoisy, "noisy"},
+                                            {Role::kOther, "other"}}};
 
 // Cycles divides by the color; all others write light as it is seen.
 constexpr std::array kLights{
@@ -91,8 +93,8 @@ constexpr std::array kLights{
 }  // namespace
 
 std::string_view role_name(Role role) {
-  return std::find_if(kRoles.begin(), kRoles.end(), [&](const auto& r) { return r.first == role; })
-      ->second;
+  return std::find_if(kRoles.begin(), kRoles.end(), [&](const auto& r) { return r.role == role; })
+      ->name;
 }
 
 std::string layer_word(std::string_view name) {
@@ -135,14 +137,6 @@ const std::vector<std::string_view>& words_of(Role role) {
   return found == all.end() ? none : found->second;
 }
 
-Role parse_role(std::string_view text) {
-  const auto found = std::find_if(kRoles.begin(), kRoles.end(),
-                                  [&](const auto& role) { return role.second == text; });
-  if (found != kRoles.end()) return found->first;
-  std::string known;
-  for (const auto& role : kRoles)
-    known += fmt::format("{}{}", known.empty() ? "" : ", ", role.second);
-  throw std::invalid_argument(fmt::format("unknown role '{}'; known: {}", text, known));
-}
+Role parse_role(std::string_view text) { return find_named(kRoles, text, "role").role; }
 
 }  // namespace eigenlight

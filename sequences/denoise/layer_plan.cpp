@@ -9,6 +9,7 @@
 
 #include "frame/bad_file.h"
 #include "frame/frame.h"
+#include "frame/named.h"
 #include "sequences/denoise/layer_map.h"
 
 namespace eigenlight {
@@ -264,11 +265,9 @@ std::vector<PlanRow> Planner::rows() const {
 }
 
 std::string Planner::known_layers() const {
-  std::string known;
-  for (const FileLayer& layer : layers_) {
-    known += fmt::format("{}{}", known.empty() ? "" : ", ", name_for_people(layer));
-  }
-  return known;
+  std::vector<std::string> names;
+  for (const FileLayer& layer : layers_) names.push_back(name_for_people(layer));
+  return names_of(names);
 }
 
 LayerPlan Planner::plan() {

@@ -8,52 +8,25 @@
 #include <stdexcept>
 
 #include "frame/bad_file.h"
-#include "sequences/files/file_pattern.h"
 #include "sequences/files/frame_range.h"
+#include "sequences/files/sequence_name.h"
 
 namespace eigenlight {
 namespace {
 
 namespace fs = std::filesystem;
 
-// An input or output: a pattern, or the name of one file.
-struct Name {
-  std::string text;
-  std::optional<FilePattern> pattern;
-
-  [[nodiscard]] fs::path file(int frame) const {
-    return pattern ? fs::path(pattern->name(frame)) : fs::path(text);
-  }
-};
-
-bool has_place(std::string_view text) {
-  return fs::path(text).filename().string().find_first_of("#@%") != std::string::npos;
-}
-
-Name parse_name(const std::string& text) {
-  std::error_code error;
-  if (!has_place(text) || fs::is_regular_file(text, error)) return {text, std::nullopt};
-  return {text, FilePattern(text)};
-}
-
-std::vector<int> existing_frames(const Name& input) {
-  if (!input.pattern) return {1};
-  const fs::path parent = fs::path(input.text).parent_path();
-  std::vector<int> frames;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(parent.empty() ? "." : parent, error)) {
-    const auto frame = input.pattern->frame((parent / entry.path().filename()).string());
-    if (frame) frames.push_back(*frame);
-  }
-  std::sort(frames.begin(), frames.end());
-  if (frames.empty()) throw BadFile(fmt::format("{}: no such files", input.text));
+std::vector<int> existing_frames(const SequenceName& input) {
+  if (input.is_single()) return {1};
+  std::vector<int> frames = input.frames();
+  if (frames.empty()) throw BadFile(fmt::format("{}: no such files", input.text()));
   for (std::size_t i = 1; i < frames.size(); ++i) {
     if (frames[i] == frames[i - 1] + 1) continue;
     // Sequences at a regular step are one shot; a hole is most often a lost file.
     const int step = frames[1] - frames[0];
     if (frames[i] - frames[i - 1] == step) continue;
     throw BadFile(fmt::format("{}: frame {} is missing; name the frames with --frames {}",
-                              input.file(frames[i - 1] + 1).string(), frames[i - 1] + 1,
+                              input.path(frames[i - 1] + 1).string(), frames[i - 1] + 1,
                               format_frame_range(frames)));
   }
   return frames;
@@ -95,27 +68,27 @@ void check_outputs(const std::vector<FrameFiles>& frames, bool overwrite) {
 }  // namespace
 
 std::vector<FrameFiles> find_sequence(const FileChoice& choice) {
-  std::vector<Name> inputs;
-  for (const std::string& text : choice.inputs) inputs.push_back(parse_name(text));
+  const std::vector<SequenceName> inputs(choice.inputs.begin(), choice.inputs.end());
   const bool to_file = is_exr(choice.output);
   if (to_file && inputs.size() > 1) {
     throw std::invalid_argument(
         fmt::format("-o {}: expected a folder, for there are several inputs", choice.output));
   }
-  const Name output = to_file ? parse_name(choice.output) : Name{choice.output, std::nullopt};
+  std::optional<SequenceName> output;
+  if (to_file) output.emplace(choice.output);
   const std::vector<int> frames =
       choice.frames.empty() ? existing_frames(inputs.front()) : parse_frame_range(choice.frames);
   std::vector<FrameFiles> sequence;
   for (const int frame : frames) {
     FrameFiles paths;
     paths.frame = frame;
-    for (const Name& input : inputs) {
-      const fs::path in = input.file(frame);
+    for (const SequenceName& input : inputs) {
+      const fs::path in = input.path(frame);
       std::error_code error;
       if (!fs::exists(in, error)) throw BadFile(fmt::format("{}: no such file", in.string()));
       paths.inputs.push_back(in);
-      paths.outputs.push_back(to_file ? output.file(frame)
-                                      : fs::path(choice.output) / in.filename());
+      paths.outputs.push_back(output ? output->path(frame)
+                                     : fs::path(choice.output) / in.filename());
     }
     sequence.push_back(std::move(paths));
   }

@@ -10,9 +10,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "sequences/files/file_pattern.h"
 #include "sequences/files/frame_range.h"
 #include "sequences/files/ldr_image.h"
+#include "sequences/files/sequence_name.h"
 #include "sequences/metrics/evaluate_images.h"
 
 namespace eigenlight {
@@ -20,59 +20,30 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The files of one sequence by frame number, or one file, which counts as frame 0.
-class Sequence {
- public:
-  explicit Sequence(const std::string& text) : text_(text) {
-    split_prefix();
-    name_ = fs::path(text_).filename();
-    std::error_code error;
-    const bool is_file = fs::is_regular_file(text_, error);
-    if (!is_file && name_.find_first_of("#@%") != std::string::npos) pattern_.emplace(name_);
-  }
-  /// What layers begin with, or empty.
-  [[nodiscard]] const std::string& prefix() const { return prefix_; }
-  [[nodiscard]] bool is_single() const { return !pattern_; }
-  [[nodiscard]] const std::string& text() const { return text_; }
-  [[nodiscard]] fs::path path(int frame) const {
-    return pattern_ ? fs::path(text_).replace_filename(pattern_->name(frame)) : fs::path(text_);
-  }
-  void add_frames(std::set<int>& frames) const {
-    if (!pattern_) {
-      frames.insert(0);
-      return;
-    }
-    const fs::path parent = fs::path(text_).parent_path();
-    std::error_code error;
-    for (const auto& entry : fs::directory_iterator(parent.empty() ? "." : parent, error)) {
-      if (const auto frame = pattern_->frame(entry.path().filename().string())) {
-        frames.insert(*frame);
-      }
-    }
-  }
-
- private:
-  void split_prefix() {
-    const std::size_t colon = text_.rfind(".exr:");
-    std::error_code error;
-    if (colon == std::string::npos || fs::is_regular_file(text_, error)) return;
-    prefix_ = text_.substr(colon + 5);
-    text_.resize(colon + 4);
-  }
-
-  std::string text_, name_, prefix_;
-  std::optional<FilePattern> pattern_;
+// A sequence of files, and what its layers begin with.
+struct Sequence {
+  SequenceName name;
+  std::string prefix;  // or empty
 };
 
+Sequence parse_sequence(const std::string& text) {
+  const std::size_t colon = text.rfind(".exr:");
+  std::error_code error;
+  if (colon == std::string::npos || fs::is_regular_file(text, error)) {
+    return {SequenceName(text), {}};
+  }
+  return {SequenceName(text.substr(0, colon + 4)), text.substr(colon + 5)};
+}
+
 std::vector<Sequence> sequences_of(const EvaluateOptions& options) {
-  std::vector<Sequence> sequences{Sequence(options.test), Sequence(options.reference)};
-  if (!options.reference_b.empty()) sequences.emplace_back(options.reference_b);
+  std::vector<Sequence> sequences{parse_sequence(options.test), parse_sequence(options.reference)};
+  if (!options.reference_b.empty()) sequences.push_back(parse_sequence(options.reference_b));
   for (const Sequence& sequence : sequences) {
-    EL_CHECK(sequence.is_single() == sequences.front().is_single(),
-             "'{}' is one image and '{}' is a sequence", options.test, sequence.text());
-    EL_CHECK(is_ldr_name(sequence.text()) == is_ldr_name(options.test),
+    EL_CHECK(sequence.name.is_single() == sequences.front().name.is_single(),
+             "'{}' is one image and '{}' is a sequence", options.test, sequence.name.text());
+    EL_CHECK(is_ldr_name(sequence.name.text()) == is_ldr_name(options.test),
              "'{}' and '{}': an 8-bit picture compares with 8-bit pictures only", options.test,
-             sequence.text());
+             sequence.name.text());
   }
   EL_CHECK(!options.reference_b.empty() ? !options.metrics.reference_noise.has_value() : true,
            "two references measure their noise themselves: leave the reference noise out");
@@ -83,12 +54,15 @@ std::vector<Sequence> sequences_of(const EvaluateOptions& options) {
 
 std::vector<int> frames_of(const EvaluateOptions& options, const std::vector<Sequence>& sequences) {
   if (!options.frames.empty()) {
-    EL_CHECK(!sequences.front().is_single(), "frames {}: '{}' is one image", options.frames,
+    EL_CHECK(!sequences.front().name.is_single(), "frames {}: '{}' is one image", options.frames,
              options.test);
     return parse_frame_range(options.frames);
   }
   std::set<int> found;
-  for (const Sequence& sequence : sequences) sequence.add_frames(found);
+  for (const Sequence& sequence : sequences) {
+    if (sequence.name.is_single()) found.insert(0);
+    for (const int frame : sequence.name.frames()) found.insert(frame);
+  }
   if (found.empty()) {
     throw std::runtime_error(fmt::format("{}: no such files", options.test));
   }
@@ -102,8 +76,8 @@ std::map<int, std::string> missing_files(const std::vector<int>& frames,
   for (const int frame : frames) {
     for (const Sequence& sequence : sequences) {
       std::error_code error;
-      if (fs::exists(sequence.path(frame), error)) continue;
-      missing.emplace(frame, fmt::format("{}: no such file", sequence.path(frame).string()));
+      if (fs::exists(sequence.name.path(frame), error)) continue;
+      missing.emplace(frame, fmt::format("{}: no such file", sequence.name.path(frame).string()));
     }
   }
   return missing;
@@ -118,9 +92,9 @@ std::map<int, std::string> missing_files(const std::vector<int>& frames,
 }
 
 FramePaths paths_of(int frame, const std::vector<Sequence>& sequences) {
-  FramePaths paths{sequences[0].path(frame), sequences[1].path(frame), {}, {}};
-  if (sequences.size() > 2) paths.reference_b = sequences[2].path(frame);
-  for (std::size_t i = 0; i < sequences.size(); ++i) paths.prefixes[i] = sequences[i].prefix();
+  FramePaths paths{sequences[0].name.path(frame), sequences[1].name.path(frame), {}, {}};
+  if (sequences.size() > 2) paths.reference_b = sequences[2].name.path(frame);
+  for (std::size_t i = 0; i < sequences.size(); ++i) paths.prefixes[i] = sequences[i].prefix;
   return paths;
 }
 
