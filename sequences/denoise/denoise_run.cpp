@@ -175,19 +175,11 @@ void Run::load() {
                     path.string()));
   }
   for (std::size_t i = 0; i < checkpoint.position; ++i) {
-    for (const fs::path& output : plan_.frames[i].outputs) {
-      if (fs::exists(output)) continue;
-      throw CheckpointError(fmt::format("{}: counts frame {} as complete, but {} is missing",
-                                        path.string(), plan_.frames[i].frame, output.string()));
-    }
+    check_complete(path, plan_.frames[i].frame, plan_.frames[i].outputs);
   }
-  try {
-    StateReader reader({checkpoint.state.data(), checkpoint.state.size()});
+  restore_state(path, checkpoint, [&](StateReader& reader) {
     for (const auto& denoiser : denoisers_) denoiser->load(reader);
-    reader.finish();
-  } catch (const std::runtime_error& error) {
-    throw CheckpointError(fmt::format("{}: {}", path.string(), error.what()));
-  }
+  });
   position_ = checkpoint.position;
 }
 

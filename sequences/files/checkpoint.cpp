@@ -87,4 +87,24 @@ Checkpoint read_checkpoint(const std::filesystem::path& path) {
   return checkpoint;
 }
 
+void restore_state(const std::filesystem::path& path, const Checkpoint& checkpoint,
+                   const std::function<void(StateReader&)>& load) {
+  try {
+    StateReader reader({checkpoint.state.data(), checkpoint.state.size()});
+    load(reader);
+    reader.finish();
+  } catch (const std::runtime_error& error) {
+    throw CheckpointError(fmt::format("{}: {}", path.string(), error.what()));
+  }
+}
+
+void check_complete(const std::filesystem::path& path, int frame,
+                    std::span<const std::filesystem::path> files) {
+  for (const std::filesystem::path& file : files) {
+    if (std::filesystem::exists(file)) continue;
+    throw CheckpointError(fmt::format("{}: counts frame {} as complete, but {} is missing",
+                                      path.string(), frame, file.string()));
+  }
+}
+
 }  // namespace eigenlight

@@ -3,10 +3,13 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "frame/bad_file.h"
+#include "frame/state.h"
 
 namespace eigenlight {
 
@@ -30,5 +33,15 @@ void write_checkpoint(const std::filesystem::path& path, const Checkpoint& check
 /// Throws CheckpointError if the file is not a checkpoint, has another format version, or is
 /// truncated or damaged (checksum); std::runtime_error if it cannot be read.
 [[nodiscard]] Checkpoint read_checkpoint(const std::filesystem::path& path);
+
+/// Gives `load` the state of a checkpoint that was read from `path`. What it throws as
+/// std::runtime_error, and bytes that it leaves over, become a CheckpointError naming the file.
+void restore_state(const std::filesystem::path& path, const Checkpoint& checkpoint,
+                   const std::function<void(StateReader&)>& load);
+
+/// Throws CheckpointError naming the first of `files`, the output of `frame`, that is missing
+/// though the checkpoint at `path` counts the frame as complete.
+void check_complete(const std::filesystem::path& path, int frame,
+                    std::span<const std::filesystem::path> files);
 
 }  // namespace eigenlight

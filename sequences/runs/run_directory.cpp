@@ -14,16 +14,6 @@ namespace {
 constexpr std::string_view kCheckpointFile = "state.bin";
 constexpr std::string_view kRunFile = "run.json";
 
-void load(const std::filesystem::path& file, const Checkpoint& checkpoint, Denoiser& denoiser) {
-  try {
-    StateReader reader({checkpoint.state.data(), checkpoint.state.size()});
-    denoiser.load(reader);
-    reader.finish();
-  } catch (const std::runtime_error& error) {
-    throw CheckpointError(fmt::format("{}: {}", file.string(), error.what()));
-  }
-}
-
 }  // namespace
 
 RunDirectory::RunDirectory(std::filesystem::path path, std::string run)
@@ -71,11 +61,9 @@ std::size_t RunDirectory::resume(const std::vector<int>& frames, Denoiser& denoi
   const FilePattern pattern(kFramePattern);
   for (std::size_t i = 0; i < checkpoint.position; ++i) {
     const std::filesystem::path file = path_ / pattern.name(frames[i]);
-    if (std::filesystem::exists(file)) continue;
-    throw CheckpointError(fmt::format("{}: counts frame {} as complete, but {} is missing",
-                                      state.string(), frames[i], file.string()));
+    check_complete(state, frames[i], {&file, 1});
   }
-  load(state, checkpoint, denoiser);
+  restore_state(state, checkpoint, [&](StateReader& reader) { denoiser.load(reader); });
   write_file_atomically(path_ / kRunFile, run_);
   return checkpoint.position;
 }

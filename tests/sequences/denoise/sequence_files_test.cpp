@@ -46,6 +46,14 @@ TEST_F(SequenceFiles, AFileOfThatNameIsNoPattern) {
   }
 }
 
+TEST_F(SequenceFiles, SignsInTheNameOfAFolderAreNoPlaceForTheFrame) {
+  std::filesystem::create_directory(dir_ / "shot@2x");
+  touch("shot@2x/a.0001.exr");
+  const auto frames = find_sequence(choice("shot@2x/a.####.exr"));
+  ASSERT_EQ(frames.size(), 1u);
+  EXPECT_EQ(frames[0].inputs.at(0), path("shot@2x/a.0001.exr"));
+}
+
 TEST_F(SequenceFiles, RegularStepsAreOneShotAndHolesAreNamed) {
   for (const char* name : {"a.0001.exr", "a.0005.exr", "a.0009.exr"}) touch(name);
   EXPECT_EQ(find_sequence(choice("a.####.exr")).size(), 3u);
