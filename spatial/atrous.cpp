@@ -1,5 +1,6 @@
 #include "spatial/atrous.h"
 
+#include <array>
 #include <numeric>
 
 #include "frame/luminance.h"
@@ -8,6 +9,8 @@
 
 namespace eigenlight {
 namespace {
+
+std::uint8_t bit(std::size_t image) { return static_cast<std::uint8_t>(1u << image); }
 
 const AtrousOptions& valid(const AtrousOptions& options) {
   options.validate();
@@ -24,13 +27,13 @@ bool is_quiet(const Planes<3>& color, const Plane<float>& variance, float quiet,
   return true;
 }
 
-void copy_tile(const AtrousPass& pass, const Tile& tile) {
+void copy_tile(const AtrousWork& work, const Tile& tile) {
   for (int y = tile.y0; y < tile.y1; ++y) {
     const auto copy = [&](const Plane<float>& from, Plane<float>& to) {
       std::copy(from.at(tile.x0, y), from.row(y) + tile.x1, to.at(tile.x0, y));
     };
-    for (std::size_t c = 0; c < 3; ++c) copy(pass.color[c], pass.out_color[c]);
-    copy(pass.variance, pass.out_variance);
+    for (std::size_t c = 0; c < 3; ++c) copy((*work.color)[c], (*work.out_color)[c]);
+    copy(*work.variance, *work.out_variance);
   }
 }
 
@@ -56,101 +59,133 @@ void AtrousOptions::validate() const {
            "plane_distance {}: expected (0, 1] of the depth", plane_distance);
 }
 
-Atrous::Atrous(Extent extent, const AtrousOptions& options)
+Atrous::Atrous(Extent extent, const AtrousOptions& options, int images)
     : options_(valid(options)),
       grid_(stage_tiles(extent)),
       planar_(extent, options.planar_tolerance()),
-      scratch_color_(make_planes<3>(extent)),
-      scratch_variance_(extent),
-      noisy_(grid_),
-      skipped_(grid_) {}
-
-void Atrous::check(const FrameInput& guides, const Planes<3>& color, const Plane<float>& variance,
-                   const Plane<float>* earlier) const {
-  const Extent extent = grid_.extent();
-  EL_CHECK(guides.extent() == extent && color[0].extent() == extent &&
-               variance.extent() == extent && (earlier == nullptr || earlier->extent() == extent),
-           "a-trous filter made for {}x{}: got planes of another size", extent.width,
-           extent.height);
+      wanted_(grid_),
+      skipped_(grid_) {
+  EL_CHECK(images >= 1 && images <= kMostImages, "images {}: expected 1 to {}", images,
+           kMostImages);
+  for (int i = 0; i < images; ++i) {
+    scratch_.push_back({make_planes<3>(extent), Plane<float>(extent)});
+  }
 }
 
-void Atrous::find_planes(const FrameInput& guides, const PerTile<std::uint8_t>& wanted) {
+void Atrous::check(const FrameInput& guides, std::span<const AtrousImage> images) const {
+  EL_CHECK(!images.empty() && images.size() <= scratch_.size(),
+           "a-trous filter made for {} images: got {}", scratch_.size(), images.size());
+  const Extent extent = grid_.extent();
+  const bool looks_back = images.front().earlier != nullptr;
+  for (const AtrousImage& image : images) {
+    const bool fits = guides.extent() == extent && image.color[0].extent() == extent &&
+                      image.variance.extent() == extent &&
+                      (image.earlier == nullptr || image.earlier->extent() == extent);
+    EL_CHECK(fits, "a-trous filter made for {}x{}: got planes of another size", extent.width,
+             extent.height);
+    EL_CHECK((image.earlier != nullptr) == looks_back,
+             "a-trous filter: some images have an earlier picture, others have none");
+  }
+}
+
+void Atrous::find_planes(const FrameInput& guides) {
   if (options_.skip_planar) {
-    planar_.find(guides, wanted);
+    planar_.find(guides, wanted_);
   } else {
     planar_.clear();
   }
 }
 
-void Atrous::run_pass(const Pass& in, int pass, Planes<3>& color, Plane<float>& variance) {
-  const AtrousPass work{in.guides, options_,   in.planes,      1 << pass,        color,
-                        variance,  in.earlier, scratch_color_, scratch_variance_};
-  const auto is_wanted = [&](const Tile& tile) { return in.wanted[tile] != 0; };
+// Tiles in which an image is not quiet. Returns the surface pixels of the others.
+std::int64_t Atrous::find_noisy(const FrameInput& guides, float quiet,
+                                std::span<const AtrousImage> images) {
+  for_each_tile(grid_, [&](const Tile& tile) {
+    const std::int64_t surface = surface_pixels(guides, tile);
+    wanted_[tile] = 0;
+    skipped_[tile] = 0;
+    for (std::size_t i = 0; i < images.size(); ++i) {
+      if (surface > 0 && !is_quiet(images[i].color, images[i].variance, quiet, tile)) {
+        wanted_[tile] |= bit(i);
+      } else {
+        skipped_[tile] += surface;
+      }
+    }
+  });
+  return std::accumulate(skipped_.begin(), skipped_.end(), std::int64_t{0});
+}
+
+// What a pass has made quiet the next one copies.
+void Atrous::forget_quiet(float quiet, std::span<const AtrousImage> images) {
+  for_each_tile(grid_, [&](const Tile& tile) {
+    for (std::size_t i = 0; i < images.size(); ++i) {
+      const bool noisy = (wanted_[tile] & bit(i)) != 0;
+      if (noisy && is_quiet(images[i].color, images[i].variance, quiet, tile)) {
+        wanted_[tile] ^= bit(i);
+      }
+    }
+  });
+}
+
+void Atrous::run_pass(const FrameInput& guides, int pass, std::span<const AtrousImage> images) {
+  std::array<AtrousWork, kMostImages> all;
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    all[i] = {&images[i].color, &images[i].variance, images[i].earlier, &scratch_[i].color,
+              &scratch_[i].variance};
+  }
+  const auto run = [&](const Tile& area, std::uint8_t wanted) {
+    std::array<AtrousWork, kMostImages> chosen;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < images.size(); ++i) {
+      (wanted & bit(i)) != 0 ? (void)(chosen[count++] = all[i]) : copy_tile(all[i], area);
+    }
+    if (count == 0) return;
+    atrous_tile({guides, options_, planar_, 1 << pass, std::span(chosen).first(count)}, area);
+  };
   for_each_strip(grid_, [&](const Strip& strip) {
-    // Neighboring tiles that are all wanted, or all not, are processed as one.
+    // Neighboring tiles in which the same images are wanted are processed as one.
     Tile area = grid_.tile(strip.area.index);
-    bool filtered = is_wanted(area);
-    const auto run = [&] { filtered ? atrous_tile(work, area) : copy_tile(work, area); };
     for (int i = 1; i < strip.tiles; ++i) {
       const Tile tile = grid_.tile(strip.area.index + i);
-      const bool next = is_wanted(tile);
-      if (next != filtered) {
-        run();
+      if (wanted_[tile] != wanted_[area]) {
+        run(area, wanted_[area]);
         area = tile;
       }
       area.x1 = tile.x1;
-      filtered = next;
     }
-    run();
+    run(area, wanted_[area]);
   });
-  std::swap(color, scratch_color_);
-  std::swap(variance, scratch_variance_);
-}
-
-const PerTile<std::uint8_t>& Atrous::find_noisy(const FrameInput& guides, float quiet,
-                                                const Planes<3>& color,
-                                                const Plane<float>& variance) {
-  check(guides, color, variance, nullptr);
-  for_each_tile(grid_, [&](const Tile& tile) {
-    const std::int64_t surface = surface_pixels(guides, tile);
-    const bool noisy = surface > 0 && !is_quiet(color, variance, quiet, tile);
-    noisy_[tile] = noisy ? 1 : 0;
-    skipped_[tile] = noisy ? 0 : surface;
-  });
-  return noisy_;
-}
-
-std::int64_t Atrous::filter_noisy(const FrameInput& guides, const PlanarBlocks& planes, float quiet,
-                                  Planes<3>& color, Plane<float>& variance,
-                                  const Plane<float>* earlier) {
-  check(guides, color, variance, earlier);
-  const Pass work{guides, planes, noisy_, earlier};
-  run_pass(work, 0, color, variance);
-  for (int pass = 1; pass < options_.passes; ++pass) {
-    for_each_tile(grid_, [&](const Tile& tile) {
-      std::uint8_t& noisy = noisy_[tile];
-      if (noisy != 0 && is_quiet(color, variance, quiet, tile)) noisy = 0;
-    });
-    run_pass(work, pass, color, variance);
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    std::swap(images[i].color, scratch_[i].color);
+    std::swap(images[i].variance, scratch_[i].variance);
   }
-  return std::accumulate(skipped_.begin(), skipped_.end(), std::int64_t{0});
+}
+
+std::int64_t Atrous::process(const FrameInput& guides, float quiet,
+                             std::span<const AtrousImage> images) {
+  check(guides, images);
+  const std::int64_t skipped = find_noisy(guides, quiet, images);
+  find_planes(guides);
+  for (int pass = 0; pass < options_.passes; ++pass) {
+    if (pass > 0) forget_quiet(quiet, images);
+    run_pass(guides, pass, images);
+  }
+  return skipped;
 }
 
 std::int64_t Atrous::process(const FrameInput& guides, float quiet, Planes<3>& color,
                              Plane<float>& variance, const Plane<float>* earlier) {
-  find_planes(guides, find_noisy(guides, quiet, color, variance));
-  return filter_noisy(guides, planar_, quiet, color, variance, earlier);
+  return process(guides, quiet, std::array{AtrousImage{color, variance, earlier}});
 }
 
 void Atrous::process(const FrameInput& guides, const PerTile<std::uint8_t>& wanted,
                      Planes<3>& color, Plane<float>& variance) {
-  check(guides, color, variance, nullptr);
+  const std::array image{AtrousImage{color, variance}};
+  check(guides, image);
   EL_CHECK(wanted.size() == grid_.count(), "{} wanted flags for {} tiles", wanted.size(),
            grid_.count());
-  find_planes(guides, wanted);
-  for (int pass = 0; pass < options_.passes; ++pass) {
-    run_pass({guides, planar_, wanted, nullptr}, pass, color, variance);
-  }
+  for_each_tile(grid_, [&](const Tile& tile) { wanted_[tile] = wanted[tile] != 0 ? 1 : 0; });
+  find_planes(guides);
+  for (int pass = 0; pass < options_.passes; ++pass) run_pass(guides, pass, image);
 }
 
 }  // namespace eigenlight

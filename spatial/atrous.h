@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "frame/frame.h"
 #include "frame/tiles.h"
@@ -29,6 +31,13 @@ struct AtrousOptions {
   [[nodiscard]] float planar_tolerance() const { return 1e-3f * plane_distance; }
 };
 
+/// An image and the variance of its luminance, both filtered in place.
+struct AtrousImage {
+  Planes<3>& color;
+  Plane<float>& variance;
+  const Plane<float>* earlier = nullptr;  ///< g below, or null
+};
+
 /// Dammertz et al. 2010 with the variance steering of Schied et al. 2017 (SVGF, section 4.4):
 ///   out(p) = sum_q h(q) w(p, q) c(q) / sum_q h(q) w(p, q),  q = p + 2^pass (-1 .. 1, -1 .. 1),
 ///   h 3 x 3 binomial weights instead of their 5 x 5 spline: a third of the cost,
@@ -46,29 +55,26 @@ struct AtrousOptions {
 /// Where all taps lie in one plane (planar_blocks.h) the weights of geometry are 1 within 0.5 % and
 /// are not calculated.
 ///
-/// `color` and `variance` are filtered in place. Tiles in which no variance exceeds `quiet` times
-/// the squared luminance are copied. Throws std::invalid_argument if extents differ.
+/// Several images of one frame are filtered in one visit, each by its own light: the weights of
+/// geometry are calculated once for all of them. Tiles in which no variance of an image exceeds
+/// `quiet` times the squared luminance are copied. Throws std::invalid_argument if extents differ.
 class Atrous {
  public:
-  Atrous(Extent extent, const AtrousOptions& options);
+  static constexpr int kMostImages = 8;
 
-  /// The tiles of stage_tiles() that are not quiet, 1 each; they are kept for filter_noisy().
-  [[nodiscard]] const PerTile<std::uint8_t>& find_noisy(const FrameInput& guides, float quiet,
-                                                        const Planes<3>& color,
-                                                        const Plane<float>& variance);
-  /// Filters the tiles that find_noisy() found. `planes` are those of `guides`: several images of
-  /// one frame share them. Returns the number of surface pixels that the first pass skips.
-  /// `earlier`: g, or null.
-  std::int64_t filter_noisy(const FrameInput& guides, const PlanarBlocks& planes, float quiet,
-                            Planes<3>& color, Plane<float>& variance,
-                            const Plane<float>* earlier = nullptr);
+  /// `images`: [1, kMostImages] that can be filtered at once.
+  Atrous(Extent extent, const AtrousOptions& options, int images = 1);
 
-  /// find_noisy() and filter_noisy() with planes of its own.
+  /// Filters 1 to `images` images. Returns the surface pixels that the first pass skips, over all
+  /// images. Throws std::invalid_argument also if one image has an earlier picture and another has
+  /// none.
+  std::int64_t process(const FrameInput& guides, float quiet, std::span<const AtrousImage> images);
+  /// The same for one image.
   std::int64_t process(const FrameInput& guides, float quiet, Planes<3>& color,
                        Plane<float>& variance, const Plane<float>* earlier = nullptr);
 
-  /// The same, without an earlier picture, for the tiles of stage_tiles() with wanted(tile index)
-  /// != 0; the others are copied.
+  /// One image without an earlier picture, in the tiles of stage_tiles() with wanted[tile] != 0;
+  /// the others are copied.
   void process(const FrameInput& guides, const PerTile<std::uint8_t>& wanted, Planes<3>& color,
                Plane<float>& variance);
 
@@ -76,23 +82,24 @@ class Atrous {
   [[nodiscard]] std::int64_t planar_pixels() const { return planar_.pixels(); }
 
  private:
-  void check(const FrameInput& guides, const Planes<3>& color, const Plane<float>& variance,
-             const Plane<float>* earlier) const;
-  void find_planes(const FrameInput& guides, const PerTile<std::uint8_t>& wanted);
-  struct Pass {
-    const FrameInput& guides;
-    const PlanarBlocks& planes;
-    const PerTile<std::uint8_t>& wanted;  // tiles; the others are copied
-    const Plane<float>* earlier;
+  // Room for the outcome of a pass.
+  struct Scratch {
+    Planes<3> color;
+    Plane<float> variance;
   };
-  void run_pass(const Pass& in, int pass, Planes<3>& color, Plane<float>& variance);
+
+  void check(const FrameInput& guides, std::span<const AtrousImage> images) const;
+  std::int64_t find_noisy(const FrameInput& guides, float quiet,
+                          std::span<const AtrousImage> images);
+  void forget_quiet(float quiet, std::span<const AtrousImage> images);
+  void find_planes(const FrameInput& guides);
+  void run_pass(const FrameInput& guides, int pass, std::span<const AtrousImage> images);
 
   AtrousOptions options_;
   TileGrid grid_;
   PlanarBlocks planar_;
-  Planes<3> scratch_color_;
-  Plane<float> scratch_variance_;
-  PerTile<std::uint8_t> noisy_;    // tiles that are not quiet
+  std::vector<Scratch> scratch_;   // of each image
+  PerTile<std::uint8_t> wanted_;   // bit i: image i is filtered there
   PerTile<std::int64_t> skipped_;  // surface pixels
 };
 

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <span>
 
 #include "spatial/atrous_kernel.h"
 
@@ -7,6 +6,7 @@
 #define HWY_TARGET_INCLUDE "spatial/atrous_simd.cpp"
 #include <hwy/foreach_target.h>
 
+#include "frame/strips.h"
 #include "frame/surface-inl.h"
 #include "spatial/atrous_taps-inl.h"
 
@@ -55,14 +55,14 @@ HWY_INLINE VF LightScale(float sigmas, VF sigma, float share, VF luminance) {
 HWY_INLINE VF KnownOrZero(VF v) { return IfThenZeroElse(IsNaN(v), v); }
 
 template <typename By>
-HWY_INLINE Light LoadLight(const AtrousPass& pass, int x, int y, VF smooth_variance) {
-  const AtrousOptions& options = pass.options;
+HWY_INLINE Light LoadLight(const AtrousOptions& options, const AtrousWork& work, int x, int y,
+                           VF smooth_variance) {
   const VF sigma = Sqrt(smooth_variance);
   Light light;
-  light.luminance = Luminance(Load(pass.color, x, y));
+  light.luminance = Luminance(Load(*work.color, x, y));
   light.scale = LightScale(options.luminance_sigmas, sigma, 1e-4f, light.luminance);
   if constexpr (By::kEarlier) {
-    light.earlier = Load(*pass.earlier, x, y);
+    light.earlier = Load(*work.earlier, x, y);
     light.earlier_scale = KnownOrZero(
         LightScale(options.earlier_sigmas, sigma, options.earlier_share, light.earlier));
   }
@@ -76,12 +76,12 @@ struct Sums {
 };
 
 // The center tap always counts, whatever its normal.
-HWY_INLINE Sums LoadCenter(const AtrousPass& pass, int x, int y) {
+HWY_INLINE Sums LoadCenter(const AtrousWork& work, int x, int y) {
   const VF own = Set(kAtrousKernel[1] * kAtrousKernel[1]);
   Sums sums;
-  for (int c = 0; c < 3; ++c) sums.color[c] = Mul(own, Load(pass.color[c], x, y));
+  for (int c = 0; c < 3; ++c) sums.color[c] = Mul(own, Load((*work.color)[c], x, y));
   sums.weight = own;
-  sums.variance = Mul(Mul(own, own), Load(pass.variance, x, y));
+  sums.variance = Mul(Mul(own, own), Load(*work.variance, x, y));
   return sums;
 }
 
@@ -104,7 +104,7 @@ HWY_INLINE VF GeometryRoot(const AtrousTapRow& row, const Taps& taps, int j, VF 
 
 // The eighth root of the weight of light.
 template <typename By, typename Taps>
-HWY_INLINE VF LightRoot(const AtrousTapRow& row, const Taps& taps, int j, const VF3& color,
+HWY_INLINE VF LightRoot(const AtrousLightRow& row, const Taps& taps, int j, const VF3& color,
                         const Light& at) {
   const VF off = Abs(Sub(Luminance(color), at.luminance));
   VF decay = NegMulAdd(off, at.scale, Set(1));
@@ -115,17 +115,17 @@ HWY_INLINE VF LightRoot(const AtrousTapRow& row, const Taps& taps, int j, const 
   return IfThenElseZero(Gt(decay, Zero()), decay);
 }
 
-// Adds taps. `root`: the eighth root of the weight of geometry.
+// Adds taps. `kernel`: h; `root`: the eighth root of the weight of geometry.
 template <typename By, typename Taps>
-HWY_INLINE void AddTap(const AtrousTapRow& row, const Taps& taps, int j, VF root, const Light& at,
-                       Sums& sums) {
+HWY_INLINE void AddTap(const AtrousLightRow& row, const Taps& taps, int j, float kernel, VF root,
+                       const Light& at, Sums& sums) {
   const VF3 color{
       {taps.Load(row.color[0], j), taps.Load(row.color[1], j), taps.Load(row.color[2], j)}};
   if constexpr (By::kLight) {
     const VF kept = LightRoot<By>(row, taps, j, color, at);
     root = By::kGeometry ? Mul(root, kept) : kept;
   }
-  VF w = taps.Kernel(row.kernel[j + 1], j);
+  VF w = taps.Kernel(kernel, j);
   if constexpr (By::kLight || By::kGeometry) {
     for (int s = 0; s < 3; ++s) root = Mul(root, root);
     w = Mul(w, root);
@@ -137,67 +137,124 @@ HWY_INLINE void AddTap(const AtrousTapRow& row, const Taps& taps, int j, VF root
 
 // Writes the pixels that show a surface; the others keep their value. Lanes beyond the row write
 // its padding.
-HWY_INLINE void StoreCenter(const AtrousPass& pass, const Sums& sums, int x, int y) {
-  const MF surface = HasSurface(pass.guides.surface.id, x, y);
+HWY_INLINE void StoreCenter(const AtrousWork& work, MF surface, const Sums& sums, int x, int y) {
   const VF scale = Div(Set(1), sums.weight);
   const auto store = [&](VF value, const Plane<float>& from, Plane<float>& to) {
     Store(IfThenElse(surface, value, Load(from, x, y)), to, x, y);
   };
-  for (int c = 0; c < 3; ++c) store(Mul(sums.color[c], scale), pass.color[c], pass.out_color[c]);
-  store(Mul(sums.variance, Mul(scale, scale)), pass.variance, pass.out_variance);
+  for (int c = 0; c < 3; ++c) {
+    store(Mul(sums.color[c], scale), (*work.color)[c], (*work.out_color)[c]);
+  }
+  store(Mul(sums.variance, Mul(scale, scale)), *work.variance, *work.out_variance);
 }
 
-// One vector of output pixels. All weights of geometry come first: 16 registers do not hold the
-// values that geometry, light and sums need at once.
+// Which taps a vector of pixels has.
+enum class Kind : std::uint8_t { kPlanar, kInner, kEdge };
+
+// Vectors of a row of pixels, and what all images share of them. It is as long as a strip: images
+// that took turns every few vectors would switch between streams of memory too often.
+struct Chunk {
+  static constexpr int kPixels = kStripWidth;
+
+  int x0, x1, y;
+  Kind kind[kPixels];  // of the vector at pixel x0 + i
+  // Eighth roots of the weights of geometry, of the taps of one vector after the other; none of
+  // vectors whose taps lie in one plane.
+  alignas(64) float root[9 * kPixels];
+};
+
+// Returns where the roots of the next vector go.
+template <typename Taps>
+HWY_INLINE float* WeighGeometry(const AtrousPass& pass, const AtrousTapRows& rows, const Taps& taps,
+                                int y, float* root) {
+  const Geometry geometry = LoadGeometry(pass, taps.x, y);
+  for (std::size_t r = 0; r < rows.count; ++r) {
+    const VF along = geometry.planes.Along(Iota(taps.x), Set(rows.row[r].line));
+    for (int j = -1; j <= 1; ++j, root += LaneCount()) {
+      Store(GeometryRoot(rows.row[r], taps, j, along, geometry), F(), root);
+    }
+  }
+  return root;
+}
+
+// Finds the kind of each vector, and its weights of geometry, once for all images.
+void ShareGeometry(const AtrousPass& pass, const AtrousTapRows& rows, Chunk& chunk) {
+  constexpr int kSide = PlanarBlocks::kSide;
+  const int width = pass.guides.extent().width, margin = (pass.step + kSide - 1) / kSide;
+  const std::uint8_t* margins = pass.planar.margins(chunk.y / kSide);
+  float* root = chunk.root;
+  for (int x = chunk.x0; x < chunk.x1; x += LaneCount()) {
+    const int last = std::min(x + LaneCount(), width) - 1;
+    Kind& kind = chunk.kind[x - chunk.x0];
+    if (x - pass.step < 0 || x + LaneCount() + pass.step > width) {
+      kind = Kind::kEdge;
+      root = WeighGeometry(pass, rows, EdgeTaps{x, pass.step, width - 1}, chunk.y, root);
+    } else if (std::min(margins[x / kSide], margins[last / kSide]) >= margin) {
+      kind = Kind::kPlanar;
+    } else {
+      kind = Kind::kInner;
+      root = WeighGeometry(pass, rows, InnerTaps{x, pass.step}, chunk.y, root);
+    }
+  }
+}
+
+// One vector of pixels of one image; moves `root` on to the next vector that has roots.
 template <typename By, typename Taps>
-HWY_INLINE void FilterVector(const AtrousPass& pass, std::span<const AtrousTapRow> rows,
-                             const Taps& taps, int y, VF smooth_variance) {
-  VF root[3][3];
-  if constexpr (By::kGeometry) {
-    const Geometry geometry = LoadGeometry(pass, taps.x, y);
-    for (std::size_t r = 0; r < rows.size(); ++r) {
-      const VF along = geometry.planes.Along(Iota(taps.x), Set(rows[r].line));
-      for (int j = -1; j <= 1; ++j) {
-        root[r][j + 1] = GeometryRoot(rows[r], taps, j, along, geometry);
-      }
-    }
-  }
+HWY_INLINE void FilterVector(const AtrousPass& pass, const AtrousTapRows& rows, std::size_t image,
+                             const Taps& taps, int y, VF smooth_variance, const float*& root) {
+  const AtrousWork& work = pass.work[image];
   Light light;
-  if constexpr (By::kLight) light = LoadLight<By>(pass, taps.x, y, smooth_variance);
-  Sums sums = LoadCenter(pass, taps.x, y);
-  for (std::size_t r = 0; r < rows.size(); ++r) {
+  if constexpr (By::kLight) {
+    light = LoadLight<By>(pass.options, work, taps.x, y, smooth_variance);
+  }
+  Sums sums = LoadCenter(work, taps.x, y);
+  for (std::size_t r = 0; r < rows.count; ++r) {
     for (int j = -1; j <= 1; ++j) {
-      if (j == 0 && rows[r].dy == 0) continue;
-      AddTap<By>(rows[r], taps, j, root[r][j + 1], light, sums);
+      if (j == 0 && rows.row[r].dy == 0) continue;
+      const VF own = By::kGeometry ? Load(F(), root + (j + 1) * LaneCount()) : Zero();
+      AddTap<By>(rows.light[image][r], taps, j, rows.row[r].kernel[j + 1], own, light, sums);
+    }
+    if constexpr (By::kGeometry) root += 3 * LaneCount();
+  }
+  StoreCenter(work, HasSurface(pass.guides.surface.id, taps.x, y), sums, taps.x, y);
+}
+
+template <LightOf kLightOf>
+void FilterImage(const AtrousPass& pass, const AtrousTapRows& rows, std::size_t image,
+                 const Chunk& chunk) {
+  using Full = Weighing<true, kLightOf>;
+  using Planar = Weighing<false, kLightOf>;
+  const int y = chunk.y;
+  const Plane<float>& variance = *pass.work[image].variance;
+  const float* root = chunk.root;
+  for (int x = chunk.x0; x < chunk.x1; x += LaneCount()) {
+    const VF smooth = Full::kLight ? SmoothVariance(variance, x, y) : Zero();
+    switch (chunk.kind[x - chunk.x0]) {
+      case Kind::kEdge:
+        FilterVector<Full>(pass, rows, image, EdgeTaps{x, pass.step, variance.width() - 1}, y,
+                           smooth, root);
+        break;
+      case Kind::kPlanar:
+        FilterVector<Planar>(pass, rows, image, InnerTaps{x, pass.step}, y, smooth, root);
+        break;
+      case Kind::kInner:
+        FilterVector<Full>(pass, rows, image, InnerTaps{x, pass.step}, y, smooth, root);
+        break;
     }
   }
-  StoreCenter(pass, sums, taps.x, y);
 }
 
 // Pixels [x0, x1) of one row.
 template <LightOf kLightOf>
 void FilterRow(const AtrousPass& pass, int x0, int x1, int y) {
-  using Full = Weighing<true, kLightOf>;
-  using Planar = Weighing<false, kLightOf>;
-  constexpr int kSide = PlanarBlocks::kSide;
-  AtrousTapRow found[3];
-  std::size_t count = 0;
-  for (int dy = -1; dy <= 1; ++dy) {
-    const int ty = y + dy * pass.step;
-    if (ty >= 0 && ty < pass.variance.height()) found[count++] = AtrousTapRow(pass, ty, dy);
-  }
-  const std::span<const AtrousTapRow> rows(found, count);
-  const int width = pass.variance.width(), margin = (pass.step + kSide - 1) / kSide;
-  const std::uint8_t* margins = pass.planar.margins(y / kSide);
-  for (int x = x0; x < x1; x += LaneCount()) {
-    const VF variance = Full::kLight ? SmoothVariance(pass.variance, x, y) : Zero();
-    const int last = std::min(x + LaneCount(), width) - 1;
-    if (x - pass.step < 0 || x + LaneCount() + pass.step > width) {
-      FilterVector<Full>(pass, rows, EdgeTaps{x, pass.step, width - 1}, y, variance);
-    } else if (std::min(margins[x / kSide], margins[last / kSide]) >= margin) {
-      FilterVector<Planar>(pass, rows, InnerTaps{x, pass.step}, y, variance);
-    } else {
-      FilterVector<Full>(pass, rows, InnerTaps{x, pass.step}, y, variance);
+  const AtrousTapRows rows(pass, y);
+  Chunk chunk;
+  chunk.y = y;
+  for (chunk.x0 = x0; chunk.x0 < x1; chunk.x0 += Chunk::kPixels) {
+    chunk.x1 = std::min(chunk.x0 + Chunk::kPixels, x1);
+    ShareGeometry(pass, rows, chunk);
+    for (std::size_t i = 0; i < pass.work.size(); ++i) {
+      FilterImage<kLightOf>(pass, rows, i, chunk);
     }
   }
 }
@@ -206,7 +263,7 @@ void AtrousTile(const AtrousPass& pass, const Rect& tile) {
   for (int y = tile.y0; y < tile.y1; ++y) {
     if (!pass.options.looks_at_light()) {
       FilterRow<LightOf::kNone>(pass, tile.x0, tile.x1, y);
-    } else if (pass.earlier == nullptr) {
+    } else if (pass.work.front().earlier == nullptr) {
       FilterRow<LightOf::kOwn>(pass, tile.x0, tile.x1, y);
     } else {
       FilterRow<LightOf::kOwnAndEarlier>(pass, tile.x0, tile.x1, y);

@@ -17,23 +17,48 @@ namespace eigenlight::HWY_NAMESPACE {
 /// h along one axis, of the taps -1, 0 and 1.
 inline constexpr float kAtrousKernel[3] = {1.0f / 4, 1.0f / 2, 1.0f / 4};
 
-/// The planes of one row of taps.
+/// The geometry of one row of taps.
 struct AtrousTapRow {
-  const float *color[3], *variance, *normal[3], *depth, *earlier;
+  const float *normal[3], *depth;
   int line, dy;     // which row of the image, and of the kernel
   float kernel[3];  // h of its taps
 
   AtrousTapRow() = default;
-  AtrousTapRow(const AtrousPass& pass, int y, int place)
-      : color{pass.color[0].row(y), pass.color[1].row(y), pass.color[2].row(y)},
-        variance(pass.variance.row(y)),
-        normal{pass.guides.surface.normal[0].row(y), pass.guides.surface.normal[1].row(y),
-               pass.guides.surface.normal[2].row(y)},
-        depth(pass.guides.surface.depth.row(y)),
-        earlier(pass.earlier != nullptr ? pass.earlier->row(y) : nullptr),
+  AtrousTapRow(const GBuffer& surface, int y, int place)
+      : normal{surface.normal[0].row(y), surface.normal[1].row(y), surface.normal[2].row(y)},
+        depth(surface.depth.row(y)),
         line(y),
         dy(place) {
     for (int j = 0; j < 3; ++j) kernel[j] = kAtrousKernel[j] * kAtrousKernel[dy + 1];
+  }
+};
+
+/// The light of one row of taps in one image.
+struct AtrousLightRow {
+  const float *color[3], *variance, *earlier;
+
+  AtrousLightRow() = default;
+  AtrousLightRow(const AtrousWork& work, int y)
+      : color{(*work.color)[0].row(y), (*work.color)[1].row(y), (*work.color)[2].row(y)},
+        variance(work.variance->row(y)),
+        earlier(work.earlier != nullptr ? work.earlier->row(y) : nullptr) {}
+};
+
+/// The rows of taps of a row of pixels: fewer than three where the image ends.
+struct AtrousTapRows {
+  AtrousTapRow row[3];
+  AtrousLightRow light[Atrous::kMostImages][3];
+  std::size_t count = 0;
+
+  AtrousTapRows(const AtrousPass& pass, int y) {
+    for (int dy = -1; dy <= 1; ++dy) {
+      const int ty = y + dy * pass.step;
+      if (ty < 0 || ty >= pass.guides.extent().height) continue;
+      for (std::size_t i = 0; i < pass.work.size(); ++i) {
+        light[i][count] = AtrousLightRow(pass.work[i], ty);
+      }
+      row[count++] = AtrousTapRow(pass.guides.surface, ty, dy);
+    }
   }
 };
 

@@ -14,24 +14,25 @@ constexpr int kStateVersion = 6;
 // Rows of pixels that a cell of the correction covers.
 constexpr int kCellRows = 2;
 
+int valid_layers(int layers) {
+  EL_CHECK(layers >= 1 && layers <= kMaxLights, "layers {}: expected 1 to {}", layers, kMaxLights);
+  return layers;
+}
+
 }  // namespace
 
 EigenDenoiser::EigenDenoiser(const DenoiserOptions& options, const EigenOptions& tuning)
-    : options_(tuning), shared_(options.extent, tuning) {
+    : options_(tuning),
+      shared_(options.extent, tuning),
+      atrous_(options.extent, tuning.atrous, valid_layers(options.layers)) {
   tuning.validate();
-  EL_CHECK(options.layers >= 1 && options.layers <= kMaxLights, "layers {}: expected 1 to {}",
-           options.layers, kMaxLights);
   for (int i = 0; i < options.layers; ++i) layers_.emplace_back(i, options, tuning);
   if (options.layers > 1) lowest_age_ = Plane<float>(options.extent);
-  noisy_ = PerTile<std::uint8_t>(stage_tiles(options.extent));
 }
 
 const Planes<3>* EigenDenoiser::step(FrameSource& source) {
   StageClock clock;
-  const auto ends = [&](Stage stage) { report_[stage] = clock.lap(); };
-  const auto each_layer = [&](auto run) {
-    for (LightLayer& layer : layers_) run(layer);
-  };
+  const auto ends = [&](Stage stage) { report_[stage] += clock.lap(); };
   if (!read(source)) return nullptr;
   ends(Stage::kSource);
   warp();
@@ -40,19 +41,24 @@ const Planes<3>* EigenDenoiser::step(FrameSource& source) {
   ends(Stage::kBudget);
   resample(source, planned);
   ends(Stage::kResample);
-  each_layer([](LightLayer& layer) { layer.project(); });
-  ends(Stage::kProject);
-  each_layer([&](LightLayer& layer) { layer.predict(shared_, resampled_); });
-  ends(Stage::kPredict);
-  each_layer([&](LightLayer& layer) { layer.bound(shared_); });
-  ends(Stage::kBound);
-  each_layer([&](LightLayer& layer) { layer.correct(shared_); });
-  ends(Stage::kCorrect);
-  each_layer([](LightLayer& layer) { layer.learn(); });
-  ends(Stage::kLearn);
-  each_layer([&](LightLayer& layer) { layer.update(shared_); });
-  ends(Stage::kUpdate);
-  filter();
+  // Layer by layer: each step finds in the cache what the steps before have left of its layer.
+  for (LightLayer& layer : layers_) {
+    layer.project();
+    ends(Stage::kProject);
+    layer.predict(shared_, resampled_);
+    ends(Stage::kPredict);
+    layer.bound(shared_);
+    ends(Stage::kBound);
+    layer.correct(shared_);
+    ends(Stage::kCorrect);
+    layer.learn();
+    ends(Stage::kLearn);
+    layer.update(shared_);
+    ends(Stage::kUpdate);
+    layer.fill_young(shared_);
+    ends(Stage::kFilter);
+  }
+  if (options_.filter) filter();
   ends(Stage::kFilter);
   finish_report();
   shared_.finish();
@@ -79,9 +85,10 @@ void EigenDenoiser::warp() {
   for (LightLayer& layer : layers_) layer.start_warp(shared_);
   for_each_strip(shared_.tiles(), [&](const Strip& strip) {
     for_each_band(strip, kSumRows, [&](const Strip& band) {
-      for_each_segment(shared_.tiles(), band, [&](const Tile& row) {
+      for_each_band(band, 1, [&](const Strip& row) {
         if (shared_.is_moving()) warp_row(row);
         for (LightLayer& layer : layers_) layer.read_ages(row);
+        if (layers() > 1) find_lowest_age(row.area);
       });
       if (shared_.is_cut()) return;
       for (LightLayer& layer : layers_) layer.sum_products(shared_, band);
@@ -90,29 +97,26 @@ void EigenDenoiser::warp() {
   for (LightLayer& layer : layers_) layer.finish_warp(shared_);
 }
 
-void EigenDenoiser::warp_row(const Tile& row) {
-  if (shared_.is_empty(row)) {
-    for (LightLayer& layer : layers_) layer.clear_row(row);
-    return;
-  }
-  TapSegment taps;
-  shared_.find_taps(row, taps);
-  for (LightLayer& layer : layers_) layer.warp_row(taps, row);
+// The taps of a whole row come first. Layers that took turns tile by tile would switch between
+// streams of memory before the hardware has recognized them.
+void EigenDenoiser::warp_row(const Strip& row) {
+  std::array<TapSegment, kStripWidth / kCoefficientTile> taps;
+  for_each_part(shared_.tiles(), row, [&](const Tile& part) {
+    if (!shared_.is_empty(part)) {
+      shared_.find_taps(part, taps[static_cast<std::size_t>(part.index - row.area.index)]);
+    }
+  });
+  for (LightLayer& layer : layers_) layer.warp_row(shared_, taps, row);
 }
 
 // A pixel is as young as its youngest layer.
-const Plane<float>& EigenDenoiser::lowest_age() {
-  if (layers() == 1) return layers_.front().old_age();
-  for_each_segment(shared_.tiles(), [&](const Tile& row) {
-    const int width = row.width();
-    float* lowest = lowest_age_.at(row.x0, row.y0);
-    std::copy_n(layers_.front().old_age().at(row.x0, row.y0), width, lowest);
-    for (const LightLayer& layer : layers_) {
-      const float* age = layer.old_age().at(row.x0, row.y0);
-      for (int i = 0; i < width; ++i) lowest[i] = age[i] < lowest[i] ? age[i] : lowest[i];
-    }
-  });
-  return lowest_age_;
+void EigenDenoiser::find_lowest_age(const Rect& row) {
+  float* lowest = lowest_age_.at(row.x0, row.y0);
+  std::copy_n(layers_.front().old_age().at(row.x0, row.y0), row.width(), lowest);
+  for (const LightLayer& layer : layers_) {
+    const float* age = layer.old_age().at(row.x0, row.y0);
+    for (int i = 0; i < row.width(); ++i) lowest[i] = age[i] < lowest[i] ? age[i] : lowest[i];
+  }
 }
 
 void EigenDenoiser::resample(FrameSource& source, std::int64_t planned) {
@@ -125,17 +129,12 @@ void EigenDenoiser::resample(FrameSource& source, std::int64_t planned) {
   if (resampled_) report_.extra_samples = planned;
 }
 
-// Young pixels are filled; then all layers share the planes of the frame.
+// The passes filter all layers at once.
 void EigenDenoiser::filter() {
-  for (LightLayer& layer : layers_) layer.fill_young(shared_);
-  if (!options_.filter) return;
-  noisy_.fill(0);
-  for (LightLayer& layer : layers_) {
-    const auto& noisy = layer.find_noisy(shared_);
-    std::transform(noisy.begin(), noisy.end(), noisy_.begin(), noisy_.begin(), std::bit_or<>());
-  }
-  shared_.find_planes(noisy_);
-  for (LightLayer& layer : layers_) layer.filter(shared_);
+  std::vector<AtrousImage> images;
+  for (LightLayer& layer : layers_) images.push_back(layer.image());
+  report_.skipped_filter = atrous_.process(frame(), options_.quiet_variance, images);
+  for (LightLayer& layer : layers_) layer.keep_picture();
 }
 
 void EigenDenoiser::finish_report() {
@@ -154,7 +153,7 @@ void EigenDenoiser::finish_report() {
   for (const LightLayer& layer : layers_) layer.add_to(shared_, report_);
   report_.mean_rank /= static_cast<double>(layers());
   report_.skipped_warp = shared_.is_still() ? pixels : 0;
-  report_.skipped_geometry = options_.filter ? shared_.planes().pixels() : 0;
+  report_.skipped_geometry = options_.filter ? atrous_.planar_pixels() : 0;
   if (!options_.filter) report_.skipped_filter = report_.surface_pixels * layers();
 }
 

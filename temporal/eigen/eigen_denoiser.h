@@ -37,8 +37,11 @@ class EigenDenoiser final : public Denoiser {
  private:
   [[nodiscard]] bool read(FrameSource& source);
   void warp();
-  void warp_row(const Tile& row);
-  [[nodiscard]] const Plane<float>& lowest_age();
+  void warp_row(const Strip& row);
+  void find_lowest_age(const Rect& row);
+  [[nodiscard]] const Plane<float>& lowest_age() const {
+    return layers() == 1 ? layers_.front().old_age() : lowest_age_;
+  }
   void resample(FrameSource& source, std::int64_t planned);
   void filter();
   void finish_report();
@@ -51,8 +54,8 @@ class EigenDenoiser final : public Denoiser {
   std::deque<LightLayer> layers_;
   FrameReport report_;
   bool resampled_ = false;
-  Plane<float> lowest_age_;      // over all layers, where there is more than one
-  PerTile<std::uint8_t> noisy_;  // tiles of stage_tiles() that any layer filters
+  Plane<float> lowest_age_;  // over all layers, where there is more than one
+  Atrous atrous_;            // of all layers
 };
 
 }  // namespace eigenlight

@@ -54,6 +54,14 @@ LightLayer::LightLayer(int index, const DenoiserOptions& options, const EigenOpt
       young_(options.extent),
       output_(make_planes<3>(options.extent)) {}
 
+// The parts of the tiles of a strip or band that show a surface.
+template <typename Body>
+void LightLayer::each_surface(const SharedFrame& shared, const Strip& band, Body&& body) const {
+  for_each_part(tiles_, band, [&](const Tile& part) {
+    if (!shared.is_empty(part)) body(part);
+  });
+}
+
 void LightLayer::start_warp(const SharedFrame& shared) {
   sums_.fill({});
   if (shared.is_cut()) {
@@ -69,17 +77,32 @@ void LightLayer::start_warp(const SharedFrame& shared) {
   filter_.start_warp();
 }
 
-void LightLayer::warp_row(const TapSegment& taps, const Tile& row) {
-  warp_bases(bases_.before, taps, row, bases_.now);
-  warp_plane(variance_.before, taps, row, variance_.now);
-  filter_.warp(taps, row);
+// Field by field: along the row each of them is one stream of memory.
+void LightLayer::warp_row(const SharedFrame& shared, std::span<const TapSegment> taps,
+                          const Strip& row) {
+  const auto taps_of = [&](const Tile& part) -> const TapSegment& {
+    return taps[static_cast<std::size_t>(part.index - row.area.index)];
+  };
+  each_surface(shared, row, [&](const Tile& part) {
+    warp_bases(bases_.before, taps_of(part), part, bases_.now);
+  });
+  each_surface(shared, row, [&](const Tile& part) {
+    warp_plane(variance_.before, taps_of(part), part, variance_.now);
+  });
+  each_surface(shared, row, [&](const Tile& part) { filter_.warp(taps_of(part), part); });
+  for_each_part(tiles_, row, [&](const Tile& part) {
+    if (shared.is_empty(part)) bases_.now.clear(part);
+  });
+}
+
+void LightLayer::read_ages(const Strip& row) {
+  for_each_part(tiles_, row, [&](const Tile& part) { bases_.now.copy_ages(part, old_age_); });
 }
 
 void LightLayer::sum_products(const SharedFrame& shared, const Strip& band) {
   const Planes<3>& light = shared.frame().lights[static_cast<std::size_t>(index_)].radiance;
   const SumInputs history{bases_.now, light, variance_.now, coefficient_history_.active()};
-  for_each_part(tiles_, band, [&](const Tile& part) {
-    if (shared.is_empty(part)) return;
+  each_surface(shared, band, [&](const Tile& part) {
     if (options_.even_gain) return accumulate_even(history, part, sums_[part]);
     accumulate_tile(history, part, sums_[part]);
   });
@@ -112,9 +135,13 @@ void LightLayer::predict(const SharedFrame& shared, bool resampled) {
   counts_.fill({});
   for_each_strip(tiles_, [&](const Strip& strip) {
     for_each_band(strip, kFireflyBlock, [&](const Strip& band) {
-      for_each_segment(tiles_, band, [&](const Tile& row) {
-        counts_[row] += merge_samples(signal, row, {residual_, samples_});
-        predict_tile(bases_.now, coefficients_, row, prediction);
+      for_each_band(band, 1, [&](const Strip& row) {
+        for_each_part(tiles_, row, [&](const Tile& part) {
+          counts_[part] += merge_samples(signal, part, {residual_, samples_});
+        });
+        for_each_part(tiles_, row, [&](const Tile& part) {
+          predict_tile(bases_.now, coefficients_, part, prediction);
+        });
       });
       fireflies_.count({expected_, old_age_, samples_, variance_.now}, {residual_, innovation_},
                        band.area);
@@ -147,9 +174,7 @@ void LightLayer::update(const SharedFrame& shared) {
     innovation_tile({innovation_, old_age_, samples_}, options_.innovation, strip.area,
                     {new_age_, variance_.now});
     for_each_part(tiles_, strip, [&](const Tile& tile) { test_tile(shared, tile); });
-    for_each_segment(tiles_, strip, [&](const Tile& row) {
-      if (!shared.is_empty(row)) update_row(shared, row);
-    });
+    for_each_band(strip, 1, [&](const Strip& row) { update_row(shared, row); });
   });
   if (newborn_ > 0) coefficient_history_.born(newborn_);
   for (const int k : coefficient_history_.retire()) bases_.now.clear_basis(k);
@@ -189,14 +214,18 @@ void LightLayer::shorten_ages(const SharedFrame& shared, const Tile& tile) {
   eigenlight::shorten_ages(shared.edge(), samples_, {inside, at_edges}, tile, new_age_);
 }
 
-void LightLayer::update_row(const SharedFrame& shared, const Tile& row) {
-  const Planes<3>* correction =
-      correction_.is_open(row.index) ? &correction_.correction() : nullptr;
-  update_tile({coefficients_, learning_rates_, residual_, correction, samples_, old_age_, new_age_,
-               coefficient_history_.active(), newborn_},
-              row, {bases_.now, output_});
-  estimate_variance({shared.frame().surface.id, new_age_, variance_.now, options_.young_age}, row,
-                    {output_variance_, young_});
+void LightLayer::update_row(const SharedFrame& shared, const Strip& row) {
+  each_surface(shared, row, [&](const Tile& part) {
+    const Planes<3>* correction =
+        correction_.is_open(part.index) ? &correction_.correction() : nullptr;
+    update_tile({coefficients_, learning_rates_, residual_, correction, samples_, old_age_,
+                 new_age_, coefficient_history_.active(), newborn_},
+                part, {bases_.now, output_});
+  });
+  each_surface(shared, row, [&](const Tile& part) {
+    estimate_variance({shared.frame().surface.id, new_age_, variance_.now, options_.young_age},
+                      part, {output_variance_, young_});
+  });
 }
 
 // Nothing is left of what an earlier frame showed there.
@@ -210,12 +239,7 @@ void LightLayer::clear_tile(const Tile& tile) {
 
 void LightLayer::fill_young(const SharedFrame& shared) {
   skipped_guided_ =
-      filter_.fill_young({shared.frame(), old_age_, new_age_, young_}, output_, output_variance_);
-}
-
-void LightLayer::filter(const SharedFrame& shared) {
-  skipped_filter_ = filter_.process({shared.frame(), old_age_, new_age_, young_}, shared.planes(),
-                                    output_, output_variance_);
+      filter_.fill_young({shared.frame(), new_age_, young_}, output_, output_variance_);
 }
 
 double LightLayer::mean_rank(const SharedFrame& shared) const {
@@ -240,7 +264,6 @@ void LightLayer::add_to(const SharedFrame& shared, FrameReport& report) const {
   const auto pixels = static_cast<std::int64_t>(tiles_.extent().pixels());
   report.skipped_correction += options_.correct ? correction_.skipped() : pixels;
   report.skipped_guided += skipped_guided_;
-  report.skipped_filter += skipped_filter_;
 }
 
 void LightLayer::save(StateWriter& out) const {

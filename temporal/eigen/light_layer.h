@@ -28,11 +28,10 @@ class LightLayer {
   // warp: history is brought to this frame, and the inner products of its tiles are summed.
 
   void start_warp(const SharedFrame& shared);
-  void warp_row(const TapSegment& taps, const Tile& row);
-  /// Forgets the history of a row of an empty tile.
-  void clear_row(const Rect& row) { bases_.now.clear(row); }
-  /// Copies the ages of a row's history.
-  void read_ages(const Rect& row) { bases_.now.copy_ages(row, old_age_); }
+  /// Warps one row of a strip; empty tiles forget their history. `taps`: of each tile.
+  void warp_row(const SharedFrame& shared, std::span<const TapSegment> taps, const Strip& row);
+  /// Copies the ages of the history of one row of a strip.
+  void read_ages(const Strip& row);
   void sum_products(const SharedFrame& shared, const Strip& band);
   void finish_warp(const SharedFrame& shared);
   [[nodiscard]] const Plane<float>& old_age() const { return old_age_; }
@@ -58,10 +57,12 @@ class LightLayer {
   // filter: from the estimate to the picture.
 
   void fill_young(const SharedFrame& shared);
-  [[nodiscard]] const PerTile<std::uint8_t>& find_noisy(const SharedFrame& shared) {
-    return filter_.find_noisy(shared.frame(), output_, output_variance_);
+  /// What the a-trous passes filter in place.
+  [[nodiscard]] AtrousImage image() {
+    return {output_, output_variance_, filter_.earlier(old_age_)};
   }
-  void filter(const SharedFrame& shared);
+  /// After the passes.
+  void keep_picture() { filter_.keep(output_); }
 
   /// The picture: radiance over the layer's color.
   [[nodiscard]] const Planes<3>& output() const { return output_; }
@@ -74,12 +75,14 @@ class LightLayer {
   void load(StateReader& in);
 
  private:
+  template <typename Body>
+  void each_surface(const SharedFrame& shared, const Strip& band, Body&& body) const;
   [[nodiscard]] CorrectionInputs correction_inputs(const SharedFrame& shared) const;
   [[nodiscard]] float longest_age(const Tile& tile) const;
   void shorten_ages(const SharedFrame& shared, const Tile& tile);
   void make_room(int bases);
   void test_tile(const SharedFrame& shared, const Tile& tile);
-  void update_row(const SharedFrame& shared, const Tile& row);
+  void update_row(const SharedFrame& shared, const Strip& row);
   void clear_tile(const Tile& tile);
   [[nodiscard]] double mean_rank(const SharedFrame& shared) const;
 
@@ -102,7 +105,7 @@ class LightLayer {
   int newborn_ = 0;               // basis that is born in this frame, or 0
 
   PerTile<PixelCounts> counts_;  // fresh and non-finite ones
-  std::int64_t bounded_ = 0, skipped_guided_ = 0, skipped_filter_ = 0;
+  std::int64_t bounded_ = 0, skipped_guided_ = 0;
 
   // This frame's light, extra samples included, until predict() takes from it what history expects.
   Planes<3> residual_;

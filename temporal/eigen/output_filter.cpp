@@ -20,7 +20,6 @@ OutputFilter::OutputFilter(Extent extent, const EigenOptions& options)
       looks_back_(options.filter && options.look_back),
       tiles_(extent, kCoefficientTile, kCoefficientTile),
       guided_(extent, options.guided),
-      atrous_(extent, options.atrous),
       guided_light_(make_planes<3>(extent)),
       shown_{Plane<float>(extent), Plane<float>(extent)} {}
 
@@ -28,31 +27,24 @@ void OutputFilter::warp(const TapSegment& taps, const Rect& row) {
   if (looks_back_) warp_plane(shown_.before, taps, row, shown_.now);
 }
 
-const PerTile<std::uint8_t>& OutputFilter::find_noisy(const FrameInput& frame,
-                                                      const Planes<3>& output,
-                                                      const Plane<float>& variance) {
-  return atrous_.find_noisy(frame, options_.quiet_variance, output, variance);
-}
-
-std::int64_t OutputFilter::process(const FilterInputs& in, const PlanarBlocks& planes,
-                                   Planes<3>& output, Plane<float>& variance) {
-  if (looks_back_) forget_new(in.old_age);
-  const std::int64_t skipped =
-      atrous_.filter_noisy(in.frame, planes, options_.quiet_variance, output, variance,
-                           looks_back_ ? &shown_.now : nullptr);
-  if (!looks_back_) return skipped;
-  for_each_segment(tiles_, [&](const Tile& row) {
-    for (int x = row.x0; x < row.x1; ++x) shown_.now(x, row.y0) = luminance(output, x, row.y0);
-  });
-  return skipped;
-}
-
 // New pixels have not been shown.
-void OutputFilter::forget_new(const Plane<float>& old_age) {
+const Plane<float>* OutputFilter::earlier(const Plane<float>& old_age) {
+  if (!looks_back_) return nullptr;
   for_each_segment(tiles_, [&](const Tile& row) {
     const float* age = old_age.row(row.y0);
-    float* earlier = shown_.now.row(row.y0);
-    for (int x = row.x0; x < row.x1; ++x) earlier[x] = age[x] == 0.0f ? kNotShown : earlier[x];
+    float* shown = shown_.now.row(row.y0);
+    for (int x = row.x0; x < row.x1; ++x) shown[x] = age[x] == 0.0f ? kNotShown : shown[x];
+  });
+  return &shown_.now;
+}
+
+void OutputFilter::keep(const Planes<3>& picture) {
+  if (!looks_back_) return;
+  for_each_segment(tiles_, [&](const Tile& row) {
+    const auto from = [&](std::size_t c) { return picture[c].at(row.x0, row.y0); };
+    const float *red = from(0), *green = from(1), *blue = from(2);
+    float* shown = shown_.now.at(row.x0, row.y0);
+    for (int i = 0; i < row.width(); ++i) shown[i] = luminance(red[i], green[i], blue[i]);
   });
 }
 

@@ -22,7 +22,6 @@ SharedFrame::SharedFrame(Extent extent, const EigenOptions& options)
       surfaces_(extent),
       counts_(tiles_),
       budget_(extent, options.budget),
-      planes_(extent, options.atrous.planar_tolerance()),
       edge_(extent),
       extra_(extent) {}
 
@@ -64,14 +63,6 @@ void SharedFrame::find_taps(const Tile& row, TapSegment& taps) {
 
 std::int64_t SharedFrame::plan_samples(const Plane<float>& age) {
   return budget_.process(frame_, age, extra_).samples;
-}
-
-void SharedFrame::find_planes(const PerTile<std::uint8_t>& wanted) {
-  if (options_.atrous.skip_planar) {
-    planes_.find(frame_, wanted);
-  } else {
-    planes_.clear();
-  }
 }
 
 void SharedFrame::reset() {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "reproject/surface_history.h"
-#include "spatial/planar_blocks.h"
 #include "temporal/eigen/eigen_options.h"
 #include "temporal/samples/pixel_counts.h"
 
@@ -25,8 +24,6 @@ class SharedFrame {
   void find_taps(const Tile& row, TapSegment& taps);
   /// Plans extra samples for the pixels of low `age` (sample_budget.h). Returns how many.
   [[nodiscard]] std::int64_t plan_samples(const Plane<float>& age);
-  /// Finds the planes of the tiles of stage_tiles() that `wanted` names, for the a-trous passes.
-  void find_planes(const PerTile<std::uint8_t>& wanted);
   /// The frame at hand has been denoised: until the next read() it is the caller's to look at.
   void finish() { is_finished_ = true; }
   /// Forgets the surfaces of the frame before, as at a cut.
@@ -50,7 +47,6 @@ class SharedFrame {
   [[nodiscard]] bool has_edges() const { return has_edges_; }
   [[nodiscard]] const Plane<std::uint8_t>& edge() const { return edge_; }
   [[nodiscard]] const Plane<std::uint8_t>& extra() const { return extra_; }  ///< samples planned
-  [[nodiscard]] const PlanarBlocks& planes() const { return planes_; }
 
   /// The surfaces that the next frame's history comes from.
   void save(StateWriter& out) const;
@@ -65,7 +61,6 @@ class SharedFrame {
   SurfaceHistory surfaces_;
   PerTile<PixelCounts> counts_;
   SampleBudget budget_;
-  PlanarBlocks planes_;
   Plane<std::uint8_t> edge_, extra_;
 };
 

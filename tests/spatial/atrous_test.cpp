@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -76,6 +77,48 @@ EL_KERNEL_TEST(Atrous, MatchesTheReferenceOnWalls) {
       }
     });
   }
+}
+
+// Two images of one frame, of which each has quiet tiles of its own.
+struct TwoImages {
+  explicit TwoImages(Extent extent) : first(extent), second(extent) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      second.color[c].copy_from(
+          random_plane(extent, 11 + static_cast<std::uint32_t>(c), 0.2f, 2.0f));
+    }
+    second.variance.copy_from(random_plane(extent, 15, 0.05f, 0.5f));
+    const int half = extent.width / 2;
+    fill_rect(first.variance, {0, 0, half, extent.height}, 1e-9f);
+    fill_rect(second.variance, {half / 2, 0, extent.width, (extent.height + 1) / 2}, 1e-9f);
+  }
+  AtrousScene first, second;
+};
+
+EL_KERNEL_TEST(Atrous, FiltersSeveralImagesAsItFiltersEach) {
+  constexpr float kQuiet = 1e-5f;
+  // Planes are looked for where any image needs them, so they are turned off here.
+  const AtrousOptions options{.passes = 4, .skip_planar = false};
+  on_every_target([&] {
+    for (const bool looks_back : {false, true}) {
+      TwoImages alone(extent), together(extent);
+      std::int64_t skipped = 0;
+      for (AtrousScene* scene : {&alone.first, &alone.second}) {
+        Atrous atrous(extent, options);
+        skipped += atrous.process(scene->guides, kQuiet, scene->color, scene->variance,
+                                  looks_back ? &scene->earlier : nullptr);
+      }
+      const auto image = [&](AtrousScene& scene) {
+        return AtrousImage{scene.color, scene.variance, looks_back ? &scene.earlier : nullptr};
+      };
+      Atrous atrous(extent, options, 2);
+      const std::array images{image(together.first), image(together.second)};
+      EXPECT_EQ(atrous.process(together.first.guides, kQuiet, images), skipped);
+      EXPECT_TRUE(planes_equal(together.first.color, alone.first.color));
+      EXPECT_TRUE(planes_equal(together.second.color, alone.second.color));
+      EXPECT_TRUE(planes_equal(together.first.variance, alone.first.variance));
+      EXPECT_TRUE(planes_equal(together.second.variance, alone.second.variance));
+    }
+  });
 }
 
 TEST(Atrous, CountsPlanarPixels) {
@@ -209,6 +252,21 @@ TEST(Atrous, RejectsOtherExtentsAndBadOptions) {
   EXPECT_THROW((void)same.process(scene.guides, 0.0f, scene.color, scene.variance, &earlier),
                std::invalid_argument);
   EXPECT_THROW(Atrous({0, 8}, {}), std::invalid_argument);
+}
+
+TEST(Atrous, RejectsImagesThatDoNotFitTogether) {
+  AtrousScene scene({64, 16});
+  EXPECT_THROW(Atrous({8, 8}, {}, 0), std::invalid_argument);
+  EXPECT_THROW(Atrous({8, 8}, {}, Atrous::kMostImages + 1), std::invalid_argument);
+  Atrous one({64, 16}, {}), two({64, 16}, {}, 2);
+  const AtrousImage plain{scene.color, scene.variance};
+  const AtrousImage with_earlier{scene.color, scene.variance, &scene.earlier};
+  EXPECT_THROW((void)one.process(scene.guides, 0.0f, std::array{plain, plain}),
+               std::invalid_argument);
+  EXPECT_THROW((void)two.process(scene.guides, 0.0f, std::array{plain, with_earlier}),
+               std::invalid_argument);
+  EXPECT_THROW((void)two.process(scene.guides, 0.0f, std::span<const AtrousImage>()),
+               std::invalid_argument);
 }
 
 }  // namespace
