@@ -1,4 +1,4 @@
-// The face of every method that turns noisy frames into steady ones.
+// The interface of all denoising methods.
 #pragma once
 
 #include <cstdint>
@@ -31,8 +31,8 @@ class Denoiser {
 
   virtual void reset() = 0;  ///< forgets all history, as at a cut
 
-  /// History between two frames. After load() the next step() gives the same bits as if the process
-  /// had never ended. load() throws std::runtime_error on data that is not such a state.
+  /// Saves and restores the history between two frames. After load() the next step() gives the same
+  /// bits as in a run without interruption. load() throws std::runtime_error on other data.
   virtual void save(StateWriter& out) const = 0;
   virtual void load(StateReader& in) = 0;
 };
@@ -41,7 +41,7 @@ struct DenoiserOptions {
   Extent extent;
   int bases = 3;   ///< [1, 8] K, for methods that have bases
   int layers = 1;  ///< [1, kMaxLights] layers of light in each frame, for `eigenlight`
-  /// Parts of the method to turn off, by name, to see what each is worth.
+  /// Names of parts of the method to turn off, to measure what each contributes.
   std::vector<std::string> without = {};
 };
 

@@ -7,19 +7,18 @@
 
 namespace eigenlight {
 
-/// The steps of the frame loop, in their order (docs/method.md). A method reports those that it
-/// has.
+/// The steps of the frame loop in order (docs/method.md). A method reports the steps that it has.
 enum class Stage {
   kSource,    ///< a frame is read
-  kWarp,      ///< history is brought to where its surfaces are now
+  kWarp,      ///< history is reprojected to this frame
   kBudget,    ///< extra samples are planned
-  kResample,  ///< and drawn
+  kResample,  ///< extra samples are drawn
   kProject,   ///< coefficients of the bases
-  kPredict,   ///< the light that they foresee, and the residual
+  kPredict,   ///< the light predicted from history, and the residual
   kBound,     ///< fireflies are scaled back
-  kCorrect,   ///< what neighbors agree on and no basis explains
+  kCorrect,   ///< the smoothed residual is added
   kLearn,     ///< statistics of the coefficients
-  kUpdate,    ///< the innovation test, and bases take the frame in
+  kUpdate,    ///< the innovation test; bases are updated by the frame
   kFilter,    ///< spatial filters
   kCount
 };

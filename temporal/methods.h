@@ -1,4 +1,4 @@
-// The methods by the names that users give them.
+// All methods by name.
 #pragma once
 
 #include <memory>
@@ -22,8 +22,8 @@ struct Method {
 /// All methods, in the order they are listed. `reference` is not among them: it is a way to render.
 [[nodiscard]] const std::vector<Method>& methods();
 
-/// Throws std::invalid_argument listing the known methods if `name` is none, listing its parts if
-/// it has none of a name in `without`, or naming a bad option.
+/// Throws std::invalid_argument: for an unknown `name` it lists the methods, for an unknown name in
+/// `without` the parts of the method; for a bad option it names the option.
 [[nodiscard]] std::unique_ptr<Denoiser> make_denoiser(std::string_view name,
                                                       const DenoiserOptions& options);
 

@@ -1,4 +1,4 @@
-// Time that a stage takes: wall and CPU.
+// Measures wall time and CPU time of a stage.
 #pragma once
 
 #include <chrono>
@@ -8,8 +8,8 @@
 
 namespace eigenlight {
 
-/// Runs from its construction. lap() gives the time since then, or since the lap before. CPU time
-/// is that of all threads of the process.
+/// Starts when it is constructed. lap() returns the time since then or since the last lap. CPU time
+/// is the sum over all threads of the process.
 class StageClock {
  public:
   [[nodiscard]] StageTime lap() {

@@ -1,4 +1,4 @@
-// Bases that follow their surfaces from frame to frame: what the baselines have in common.
+// Reprojected bases, shared by the baselines.
 #pragma once
 
 #include <cstdint>
@@ -9,31 +9,31 @@
 
 namespace eigenlight {
 
-/// How a history is carried over.
+/// How a history is reprojected.
 struct HistoryOptions {
-  /// Taps of age 0 give nothing, the others share their weight; otherwise they count as zeros.
+  /// Taps of age 0 are left out and the others share their weight; if false, they count as zeros.
   bool drops_empty_taps = false;
-  /// A pixel none of whose four taps shows its surface takes the mean of those of the 3 x 3 pixels
-  /// around that do and are not of age 0 (SVGF, section 4.1).
+  /// If none of the four taps shows the pixel's surface, the pixel takes the mean of those of the
+  /// 3 x 3 pixels around that show it and have an age above 0 (Schied 2017, section 4.1).
   bool widens = false;
 };
 
-/// Bases and ages as the last frame saw them, with the surfaces and the camera of that frame.
+/// Bases and ages of the last frame, with the surfaces and the camera of that frame.
 class BasisHistory {
  public:
   struct Warp {
     bool cut = false;          ///< history was dropped
-    std::int64_t skipped = 0;  ///< pixels left as they are since nothing moved
+    std::int64_t skipped = 0;  ///< pixels not warped because nothing moved
   };
 
   /// Throws std::invalid_argument on a bad size or number of bases.
   BasisHistory(Extent extent, int bases, const HistoryOptions& options = {});
 
-  /// Carries bases and ages over to `frame` through validated taps. All become 0 at a cut, which is
-  /// a frame that does not follow the one kept last. Throws std::invalid_argument if its size
+  /// Reprojects bases and ages to `frame` through validated taps. A frame that does not follow the
+  /// one kept last is a cut: all values become 0. Throws std::invalid_argument if its size
   /// differs.
   [[nodiscard]] Warp warp(const FrameInput& frame);
-  /// Takes what the next warp() has to know of `frame`. The bases are to be updated by then.
+  /// Keeps what the next warp() needs of `frame`. Call it after the bases are updated.
   void keep(const FrameInput& frame) { surfaces_.keep(frame); }
   void reset() { surfaces_.reset(); }  ///< the next warp() is a cut
 

@@ -1,4 +1,4 @@
-// What mean, svgf and bmfr have in common: a history into which each frame is blended.
+// A history into which each frame is blended, shared by mean, svgf and bmfr.
 #pragma once
 
 #include <string>
@@ -10,9 +10,9 @@
 
 namespace eigenlight {
 
-/// Per frame: history is warped, each pixel's sample is blended into it (blend_tile), and the
-/// picture made of it (finish). A sample is usable on a surface if all of its channels are finite;
-/// what is not usable takes part in nothing and is counted.
+/// For each frame, history is warped, each pixel's sample is blended into it (blend_tile), and the
+/// picture is made from it (finish). A sample is usable if it lies on a surface and all of its
+/// channels are finite. Other samples are ignored and counted.
 class BlendedHistory : public Denoiser {
  public:
   [[nodiscard]] const Planes<3>* step(FrameSource& source) final;
@@ -37,11 +37,11 @@ class BlendedHistory : public Denoiser {
 
   /// Blends this frame into the history of a tile, by for_each_sample().
   virtual void blend_tile(const Tile& tile) = 0;
-  /// The picture, valid until the next frame. What it writes into the history stays there.
+  /// Returns the picture, valid until the next frame. It may write into the history.
   [[nodiscard]] virtual const Planes<3>& finish() = 0;
 
-  /// Calls blend(x, y, usable) for each pixel of the tile, which leaves the new age in the history;
-  /// that is copied to age().
+  /// Calls blend(x, y, usable) for each pixel of the tile. blend() writes the new age into the
+  /// history; it is copied to age().
   template <typename Blend>
   void for_each_sample(const Tile& tile, const Blend& blend);
 

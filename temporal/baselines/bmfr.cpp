@@ -59,7 +59,7 @@ void Bmfr::blend_fit(const Tile& tile) {
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0; x < tile.x1; ++x) {
       const float frames = age()(x, y);
-      // Without a sample yet: the fit alone, of which nothing is kept.
+      // Without a sample so far the pixel shows the fit alone, which is not kept.
       if (!(frames > 0.0f)) continue;
       const float share = std::max(options_.second_alpha, 1.0f / frames);
       for (std::size_t c = 0; c < 3; ++c) {

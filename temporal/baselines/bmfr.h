@@ -13,17 +13,16 @@ struct BmfrOptions {
   void validate() const;  ///< throws std::invalid_argument naming the field
 };
 
-/// Koskela et al. 2019, for comparison, on light over albedo. Per frame, n being the frames of a
-/// pixel's history with this one, at most 255:
+/// Koskela et al. 2019, for comparison, on light over albedo. n is the number of frames in a
+/// pixel's history with this one, at most 255. For each frame:
 ///   1. the noisy light is blended into its history with max(alpha, 1 / n) (section 3.1);
-///   2. the blend is fitted with features block by block (bmfr_fit.h), the blocks being shifted
-///   with
-///      every frame number;
+///   2. the blend is fitted with features block by block (bmfr_fit.h); the blocks are shifted in
+///      every frame;
 ///   3. the fit is blended into its own history with max(second_alpha, 1 / n) (section 3.5).
-/// The paper's last stage, antialiasing of the tone-mapped picture, is not light and left out. Taps
-/// are those of reproject/taps.h instead of limits on position and normal that the authors set for
-/// each scene. Samples that are not finite take part in nothing: their pixels keep their history,
-/// or show the fit of their block alone.
+/// The paper's last stage, antialiasing of the tone-mapped picture, is left out. Taps are those of
+/// reproject/taps.h; the authors set limits on position and normal for each scene. Samples that are
+/// not finite are ignored: their pixels keep their history. Without history they show the fit of
+/// their block.
 class Bmfr final : public BlendedHistory {
  public:
   static constexpr float kMostFrames = 255.0f;

@@ -45,7 +45,7 @@ Features features_at(const FrameInput& guides, int x, int y) {
   return f;
 }
 
-// Inside the image after as many reflections as it takes.
+// Mirrors a coordinate until it lies inside the image.
 int mirrored(int i, int size) {
   const int period = 2 * size;
   const int at = (i % period + period) % period;

@@ -103,7 +103,7 @@ void Chen2012::merge_samples(const Tile& tile, bool resampled) {
         if (extra > 0.0f) u = (regular * u + extra * extra_mean_[c](x, y)) / (regular + extra);
         sum += std::abs(u);
       }
-      // Products of two lights have to fit into the bases. NaN fails too, without a fault.
+      // Bases must hold products of two lights. The comparison is false for NaN.
       const bool finite = std::islessequal(sum, kLargestLight);
       age_(x, y) = surface && finite ? 1.0f : 0.0f;
       counts.non_finite += surface && !finite ? 1 : 0;

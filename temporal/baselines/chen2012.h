@@ -9,7 +9,7 @@
 
 namespace eigenlight {
 
-/// What Chen 2012 compares its choices with.
+/// Variants that Chen 2012 compares.
 struct ChenOptions {
   bool per_pixel_weights = true;  ///< else n of step 4 is that of the frames since the last cut
   bool basis_filter = true;       ///< step 5
@@ -17,18 +17,18 @@ struct ChenOptions {
 
 /// Chen, Lei and Chang 2012, for comparison. Per frame:
 ///   1. bases and ages are carried over by reverse reprojection (section 3.4);
-///   2. newly seen pixels get 120 more samples each (Fig. 6d), but none at a cut, where all are
-///   new;
+///   2. newly seen pixels get 120 more samples each (Fig. 6d); not at a cut, where all pixels are
+///      new;
 ///   3. the warped bases are made orthogonal (Algorithm 2);
 ///   4. CCIPCA updates them with w = (1 + l) / n, amnesia l = 2, n the pixel's own age with this
 ///      frame (Algorithm 1, section 3.4.2);
 ///   5. bases are smoothed at newly seen pixels (Fig. 6c); at a cut, only where no sample is
-///   usable;
+///      usable;
 ///   6. the picture is the projection of the noisy frame on the *updated* bases.
-/// Readings where the paper is silent: w is at most 1, since (1 + l) / n of the first frames would
-/// weigh history negatively. With w = 1 a new pixel thus starts at Algorithm 1's own u_i (u_i . v_i
-/// / |v_i|): its v_1 reproduces its sample, its other v_i what that leaves over. Ages saturate at
-/// 255. Samples that are not finite take part in nothing.
+/// Choices where the paper says nothing: w is at most 1, because (1 + l) / n of the first frames
+/// would give history a negative weight. With w = 1 a new pixel starts at Algorithm 1's own u_i
+/// (u_i . v_i / |v_i|): its v_1 reproduces its sample, and its other v_i the remainder. Ages
+/// saturate at 255. Samples that are not finite are ignored.
 class Chen2012 final : public Denoiser {
  public:
   static constexpr float kAmnesia = 2.0f;       ///< l; Weng 2003 takes 2 to 4

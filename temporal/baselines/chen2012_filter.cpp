@@ -110,7 +110,7 @@ void NewPixelFilter::process(const FrameInput& frame, const Plane<std::uint8_t>&
       filtered.insert(filtered.end(), values.begin(), values.begin() + count);
     });
   });
-  // Only now, since windows see filtered pixels of other tiles.
+  // Written only now, because windows of other tiles read these pixels.
   for_each_tile(tiles_, [&](const Tile& tile) {
     const float* next = filtered_[static_cast<std::size_t>(tile.index)].data();
     for_marked(tile, [&](int x, int y) {

@@ -15,14 +15,14 @@ namespace eigenlight {
 ///   v(p) = sum_q w(p, q) v(q) / sum_q w(p, q) over pixels q of positive age,
 ///   w = exp(-|p - q|^2 / (2 * 2.5^2)) max(0, N_p . N_q)^64
 ///       * exp(-|N_p . (X_q - X_p)| / (0.02 depth_p)).
-/// The paper leaves the weights open; normals and planes weigh as in the a-trous filter
-/// (spatial/atrous.h), and the window ends at two standard deviations. A pixel without a neighbor
-/// of its kind keeps its values.
+/// The paper does not give the weights. Normals and planes weigh as in the a-trous filter
+/// (spatial/atrous.h); the window ends at two standard deviations. A pixel without a neighbor on
+/// its surface keeps its values.
 class NewPixelFilter {
  public:
   explicit NewPixelFilter(Extent extent);
 
-  /// Filters where `smooth` is not 0, which takes a surface. Ages are not changed.
+  /// Filters pixels with a surface where `smooth` is not 0. Ages are not changed.
   void process(const FrameInput& frame, const Plane<std::uint8_t>& smooth, BasisField& bases);
 
  private:

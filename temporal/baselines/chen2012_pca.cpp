@@ -27,8 +27,8 @@ void for_pixels(const Tile& tile, const Visit& visit) {
   }
 }
 
-// Below 1e-12 of its former energy an image is what the rounding of floats leaves when a multiple
-// of itself is taken off: 1e-14 for each subtraction.
+// Below 1e-12 of its former energy an image is rounding error: subtracting a multiple of an image
+// from itself leaves 1e-14 of its energy.
 constexpr double kLost = 1e-12;
 
 // combination(i, j), j <= i: how much of the old basis j the i-th orthogonal one holds, given all

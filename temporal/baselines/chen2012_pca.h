@@ -22,11 +22,11 @@ class ImagePca {
  public:
   ImagePca(Extent extent, int bases);
 
-  /// Chen 2012, Algorithm 2. As printed it deflates u and leaves all bases but a new one as they
-  /// are. Read by its purpose, mutually orthogonal bases, the same sweep runs over the bases
-  /// themselves (Gram-Schmidt): v_i <- v_i - sum over j < i of (v_i . v_j) v_j / |v_j|^2, j going
-  /// over the bases already done. Products run over all pixels. A basis that depends on those
-  /// before it becomes 0.
+  /// Chen 2012, Algorithm 2. As printed, it deflates u and changes no basis but a new one. Its
+  /// purpose is to make the bases orthogonal, so here the same sweep runs over the bases
+  /// (Gram-Schmidt): v_i <- v_i - sum over j < i of (v_i . v_j) v_j / |v_j|^2, with the v_j already
+  /// orthogonal. Products run over all pixels. A basis that depends linearly on those before it
+  /// becomes 0.
   void orthogonalize(BasisField& bases);
 
   /// Chen 2012, Algorithm 1, with per-pixel weights (section 3.4.2). u_1 = u, and for
@@ -34,9 +34,8 @@ class ImagePca {
   ///   v_i <- u_i                                       if i = n, or |v_i| = 0
   ///   v_i <- (1 - w) v_i + w u_i (u_i . v_i / |v_i|)   else
   ///   u_(i+1) = u_i - (u_i . v_i / |v_i|) v_i / |v_i|
-  /// A basis without length has no direction to learn in; it starts again, as at i = n. A u_i with
-  /// less than 1e-12 of the energy of u is rounding, of which no basis shall be made: it counts as
-  /// 0. Pixels of weight 0 keep their values.
+  /// A basis of length 0 has no direction and starts again, as at i = n. A u_i with less than 1e-12
+  /// of the energy of u is rounding error and counts as 0. Pixels of weight 0 keep their values.
   void update(const PcaFrame& frame, BasisField& bases);
 
   /// out = sum over i of (u . v_i / |v_i|) v_i / |v_i|, at all pixels. Returns the number of bases
@@ -46,11 +45,11 @@ class ImagePca {
  private:
   using Sums = std::array<double, kMaxBases*(kMaxBases + 1) / 2>;
   struct Factors {
-    double projection = 0.0;  ///< (u_(i-1) . v_(i-1)) / |v_(i-1)|^2: what is yet to be taken off u
+    double projection = 0.0;  ///< (u_(i-1) . v_(i-1)) / |v_(i-1)|^2, not yet subtracted from u
     double energy = 0.0;      ///< |u|^2
     double dot = 0.0;         ///< u_i . v_i / |v_i|
     bool starts = false;
-    bool lost = false;  ///< u_i is rounding
+    bool lost = false;  ///< u_i is rounding error
   };
 
   [[nodiscard]] Sums reduce(const std::function<void(const Tile&, Sums&)>& add);

@@ -9,13 +9,13 @@
 
 namespace eigenlight {
 
-/// Hands the raw indirect light through `filter`, or out as it is where that is null (`noisy`). No
-/// history, no resampling; age is 1 on every surface. Pixels with NaN or Inf in any channel are
-/// excluded and counted: 0 in the signal, with weight 0. Surface pixels all count as new in the
-/// report, because none has a history.
+/// Filters the raw indirect light with `filter`, or returns it unchanged if `filter` is null
+/// (`noisy`). There is no history and no resampling; age is 1 on every surface. Pixels with NaN or
+/// Inf in any channel are excluded and counted: they are 0 in the signal, with weight 0. All
+/// surface pixels count as new in the report, because none has a history.
 class FrameByFrame final : public Denoiser {
  public:
-  /// `name` is that of the method, which its states bear.
+  /// `name`: of the method; it is saved in its states.
   FrameByFrame(const DenoiserOptions& options, std::string_view name,
                std::unique_ptr<SpatialFilter> filter = nullptr);
 

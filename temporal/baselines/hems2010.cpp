@@ -59,7 +59,7 @@ Hems2010::Hems2010(const DenoiserOptions& options, const HemsOptions& parts)
       age_(options.extent),
       counts_(static_cast<std::size_t>(tiles_.count())) {
   parts.validate();
-  // Light is over albedo: 10 is further apart than any two of them.
+  // Light is divided by albedo, so the window ignores albedo: 10 exceeds all of its differences.
   const CrossBilateralOptions window{.radius = parts.radius, .sigma_albedo = 10.0f};
   if (parts.radius > 0) window_ = std::make_unique<CrossBilateral>(options.extent, window);
 }
@@ -93,7 +93,7 @@ const Planes<3>* Hems2010::step(FrameSource& source) {
   return &output_;
 }
 
-// u, where it may be used.
+// u where it is usable.
 void Hems2010::take_light(const Tile& tile, PixelCounts& counts) {
   const auto& u = frame_.lights[0].radiance;
   counts = {};
@@ -116,7 +116,7 @@ void Hems2010::smooth() {
   for_each_tile(tiles_, [&](const Tile& tile) {
     for (int y = tile.y0; y < tile.y1; ++y) {
       for (int x = tile.x0; x < tile.x1; ++x) {
-        // Where nothing usable is near the filter gives 0.
+        // The filter gives 0 where no usable pixel is near.
         const bool filled = usable_(x, y) > 0.0f || at(smooth_, {x, y}) != glm::vec3(0.0f);
         known_(x, y) = filled ? 1.0f : 0.0f;
       }
@@ -184,7 +184,7 @@ bool Hems2010::gather_pixel(glm::ivec2 p) {
   return found;
 }
 
-// Puts this frame before the others, in the planes of the one that leaves.
+// Puts this frame before the others and reuses the planes of the oldest one.
 void Hems2010::keep() {
   if (options_.frames == 0) return;
   if (past_.size() < static_cast<std::size_t>(options_.frames)) past_.emplace_back();

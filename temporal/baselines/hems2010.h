@@ -19,20 +19,20 @@ struct HemsOptions {
   void validate() const;  ///< throws std::invalid_argument naming the field
 };
 
-/// Herzog, Eisemann, Myszkowski and Seidel 2010, as Chen 2012 (section 4.2) compares with it: a
-/// weighted sum over the past 16 frames, in which similar colors weigh more, of what a
-/// geometry-aware window makes of each frame:
+/// Herzog, Eisemann, Myszkowski and Seidel 2010, as Chen 2012 (section 4.2) compares with it. A
+/// geometry-aware window filters each frame; the result is a weighted sum over the past 16 frames,
+/// in which similar colors weigh more:
 ///   s = the cross bilateral filter of u (spatial/rivals/cross_bilateral.h), by normals and depth
 ///   alone, out(p) = sum_k w_k s_k / sum_k w_k,  k = 0 .. 16 frames ago, w_0 = 1,
 ///     w_k = exp(-|s_k - s_0|^2 / (2 color^2 (|s_k|^2 + |s_0|^2) / 2)).
-/// s_k is read at the point's own place k frames ago: its motion is followed from frame to frame,
-/// and each step has to find the surface by the rule of reproject/taps.h. Every frame is shaded in
-/// full here, as in Chen's comparison; Herzog's frames are sparse, and the window is what fills
-/// them. Chen gives the form of neither weight; w is that of a bilateral filter.
+/// s_k is read where the point was k frames ago: its motion is followed from frame to frame, and
+/// each step must find the surface by the rule of reproject/taps.h. Every frame is shaded in full
+/// here, as in Chen's comparison. Herzog's frames are sparse, and the window fills them. Chen does
+/// not give the weights; w is that of a bilateral filter.
 ///
 /// `age` is (sum w)^2 / sum w^2. Holds 48 bytes a pixel for each past frame: 177 MB at 640 x 360.
-/// Samples that are not finite take part in nothing; where the window is empty for them too and no
-/// past frame knows better, the pixel is 0.
+/// Samples that are not finite are ignored. Where the window is empty and no past frame shows the
+/// point, the pixel is 0.
 class Hems2010 final : public Denoiser {
  public:
   explicit Hems2010(const DenoiserOptions& options, const HemsOptions& parts = {});
@@ -53,7 +53,7 @@ class Hems2010 final : public Denoiser {
     Planes<2> motion;
     Plane<float> previous_depth;
     Planes<3> light;     // s
-    Plane<float> known;  // 1 where there is such, else 0
+    Plane<float> known;  // 1 where s has a value, else 0
   };
   // A point of a past frame, weighted by its taps.
   struct Seen {

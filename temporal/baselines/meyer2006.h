@@ -11,31 +11,30 @@
 namespace eigenlight {
 
 struct MeyerOptions {
-  /// >= 0; frames and tracks of one sequence may take up so many bytes together.
+  /// >= 0 bytes that the frames and tracks of one sequence may take up together.
   std::int64_t most_bytes = std::int64_t{8} << 30;
   TrackPcaOptions pca = {};  ///< `bases` is taken from DenoiserOptions
   TapOptions taps = {};
 };
 
-/// Meyer and Anderson 2006, for comparison: PCA of the whole sequence, of which the leading bases
-/// are kept (8 in the paper; DenoiserOptions::bases here), and each frame is its projection on
-/// them. They take the same points of the objects in every frame, seen or not. Here points are
-/// followed through reprojected screen space and exist where they are seen: PointTracks, TrackPca.
-/// A pixel is the mean of the points on it, by their bilinear share and the number of frames behind
-/// them.
+/// Meyer and Anderson 2006, for comparison. The leading bases of a PCA of the whole sequence are
+/// kept (8 in the paper, DenoiserOptions::bases here), and each frame is projected on them. The
+/// paper takes the same points of the objects in every frame, visible or not. Here points are
+/// followed through reprojected screen space while they are visible: PointTracks, TrackPca. A pixel
+/// is the mean of the points on it, weighted by their bilinear shares and numbers of frames.
 ///
-/// The first step() reads all frames up to the end or the next cut, and analyzes them; each step()
-/// then hands out one, to which frame(), report() and age() refer. Reports bear equal shares of the
-/// time for reading and analysis. Throws std::runtime_error when the frames exceed most_bytes, of
-/// which a pixel of each frame takes 150: 36 MB a frame of 640 x 360, 248 such frames with 8 GiB.
+/// The first step() reads and analyzes all frames up to the end or the next cut. Each step() then
+/// returns one of them, to which frame(), report() and age() refer. The time for reading and
+/// analysis is shared equally among the reports. Throws std::runtime_error when the frames exceed
+/// most_bytes; each pixel of a frame takes 150 bytes: 36 MB for a frame of 640 x 360, so 8 GiB hold
+/// 248 such frames.
 ///
-/// save() keeps the pictures that are left (16 bytes a pixel and frame). After load() the source
-/// has to start with the first frame that was not handed out, as a source does that goes on after a
-/// restart; step() throws std::runtime_error where it does not. reset() makes what is left of the
-/// sequence one of its own.
+/// save() keeps the pictures that are left (16 bytes for each pixel and frame). After load() the
+/// source must start with the first frame that was not returned, or step() throws
+/// std::runtime_error. After reset() the rest of the sequence is analyzed as a sequence of its own.
 ///
 /// Pixels that are not finite are missing data. `age` is the number of frames behind a pixel over
-/// its bases; `new_pixels` counts those of which no other frame knows.
+/// its number of bases; `new_pixels` counts the pixels that no other frame shows.
 class Meyer2006 final : public Denoiser {
  public:
   explicit Meyer2006(const DenoiserOptions& options, const MeyerOptions& parts = {});

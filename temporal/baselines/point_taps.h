@@ -1,4 +1,4 @@
-// The taps of single points: for methods that look further back than one frame.
+// The taps of single points, for methods that look back by more than one frame.
 #pragma once
 
 #include <array>
@@ -7,21 +7,21 @@
 
 namespace eigenlight {
 
-/// A point of a surface, as it is looked for in an earlier frame.
+/// A point of a surface that is searched in an earlier frame.
 struct SoughtPoint {
   std::uint32_t id = 0;
   glm::vec3 normal{0.0f};  ///< world space
   glm::vec2 pixel{0.0f};   ///< where it was, in units of pixel centers: whole numbers are pixels
-  float depth = 0.0f;      ///< that it had there
+  float depth = 0.0f;      ///< in that frame
 };
 
-/// Whether taps of an earlier frame show the sought point's surface: the rule of reproject/taps.h,
-/// one tap at a time. A point that is not finite, or not in front of the camera, has no taps.
+/// Tells whether a tap of an earlier frame shows the point's surface, by the rule of
+/// reproject/taps.h. A point that is not finite, or not in front of the camera, has no taps.
 class TapRule {
  public:
   TapRule(const PreviousSurface& earlier, const TapOptions& options, const SoughtPoint& point);
 
-  /// (x, y) may lie outside the image, where nothing is accepted.
+  /// False where (x, y) lies outside the image.
   [[nodiscard]] bool accepts(int x, int y) const;
 
  private:

@@ -17,11 +17,11 @@ struct TrackSample {
   bool is_usable = false;         ///< some tap's light is finite
 };
 
-/// The tracks of frames that follow each other, each frame leading to the one before it. From the
-/// last frame to the first: every point goes where its motion leads, as far as it finds its surface
-/// there by the rule of reproject/taps.h, and each pixel that points cover by less than half of a
-/// pixel starts one of its own. Where two points cover a pixel in full, further ones end.
-/// Points that stay are thus the same points of their objects in all frames, whatever moves.
+/// The tracks of consecutive frames. Frames are visited from the last to the first. Every point
+/// moves along its motion vector and ends where its surface is not found by the rule of
+/// reproject/taps.h. A pixel that points cover by less than half starts a new point. Where two
+/// points cover a pixel in full, further ones end. A track thus stays on one point of its object,
+/// whatever moves.
 class PointTracks {
  public:
   /// Throws std::invalid_argument if there is no frame or sizes differ.

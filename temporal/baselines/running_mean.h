@@ -1,4 +1,4 @@
-// The simplest history there is: every pixel's mean, carried along with its surface.
+// The reprojected running mean of every pixel.
 #pragma once
 
 #include "temporal/baselines/blended_history.h"
@@ -6,10 +6,9 @@
 namespace eigenlight {
 
 /// Reprojected running mean: mean <- mean + (u - mean) / n with n = min(age + 1, 32) frames, age
-/// being that of the reprojected history. No spatial filter, no resampling. Reprojection carries
-/// mean * age, so that the four taps weigh by what stands behind them and a pixel that has yet to
-/// see a finite sample gives nothing. A pixel that is not finite keeps its history, or is 0 and
-/// stays new without one.
+/// being that of the reprojected history. No spatial filter, no resampling. Reprojection warps
+/// mean * age, so that taps weigh by their age and a pixel without any finite sample counts
+/// nothing. A pixel that is not finite keeps its history. Without history it is 0 and stays new.
 class RunningMean final : public BlendedHistory {
  public:
   /// Longest mean: that of the project's comparison table, about a second of film.

@@ -16,23 +16,22 @@ struct SvgfOptions {
   void validate() const;  ///< throws std::invalid_argument naming the field
 };
 
-/// Schied et al. 2017, for comparison, on light over albedo. Per frame, n being the frames of a
-/// pixel's history with this one:
+/// Schied et al. 2017, for comparison, on light over albedo. n is the number of frames in a pixel's
+/// history with this one. For each frame:
 ///   1. color and moments of luminance are carried over through taps that show the same surface, or
 ///      their 3 x 3 surroundings where none does, and blended with
 ///      max(alpha, 1 / n) of this frame (section 4.1; 1 / n is of the authors' implementation);
-///   2. the variance of luminance is m_2 - m_1^2; below 4 frames moments and color come from a 7 x
-///   7
-///      cross-bilateral window, the variance times 4 / n (section 4.2; the factor and the color are
-///      of the authors' implementation);
+///   2. the variance of luminance is m_2 - m_1^2; below 4 frames, moments and color come from a
+///      7 x 7 cross-bilateral window, and the variance is multiplied by 4 / n (section 4.2; the
+///      factor and the color are of the authors' implementation);
 ///   3. five a-trous passes steered by that variance; the color after the first becomes history
 ///      (section 4.3, svgf_filter.h).
-/// n saturates at 32 frames. Samples that are not finite take part in nothing: their pixels keep
-/// their history, or are filled from the window; where that is empty too they are 0.
+/// n saturates at 32 frames. Samples that are not finite are ignored: their pixels keep their
+/// history. Without history they are filled from the window, or are 0 if it is empty.
 class Svgf final : public BlendedHistory {
  public:
   static constexpr float kMostFrames = 32.0f;
-  static constexpr float kYoung = 4.0f;  ///< frames: from then on history tells the variance
+  static constexpr float kYoung = 4.0f;  ///< frames from which on the variance comes from history
 
   explicit Svgf(const DenoiserOptions& options, const SvgfOptions& parts = {});
 

@@ -25,7 +25,7 @@ float svgf_geometry_weight(const FrameInput& guides, const SvgfWeights& weights,
   };
   const glm::vec3 normal = normal_at(p), view_normal = camera.world_to_view * normal;
   float facing = std::max(0.0f, glm::dot(normal, normal_at(q)));
-  // Normals that are no unit vectors, and depths that are none, would let weights grow.
+  // Normals of another length and invalid depths would make weights grow.
   if (!std::islessequal(facing, kLargestCosine)) return 0.0f;
   for (int s = 0; s < weights.normal_squarings; ++s) facing *= facing;
   const float depth = std::max(guides.surface.depth(p.x, p.y), 0.0f);

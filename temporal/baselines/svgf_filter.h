@@ -1,4 +1,4 @@
-// The spatial half of SVGF: variance of young pixels, and the a-trous passes that it steers.
+// The spatial part of SVGF: the variance of young pixels, and the a-trous passes.
 #pragma once
 
 #include "frame/frame.h"
@@ -35,9 +35,10 @@ struct SvgfPass {
 ///   variance(p) = sum (h w)^2 variance(q) / (sum h w)^2,   h the 5 x 5 B3-spline with holes,
 ///   w = exp(-|z_p - z_q| / (sigma_z |grad z . (p - q)| + e_z)) max(0, N_p . N_q)^sigma_n
 ///       * exp(-|l_p - l_q| / (sigma_l sqrt(g(variance_p)) + e_l)),  g the 3 x 3 binomial.
-/// grad z is that of the pixel's own plane. The paper leaves both e open: e_z = 1e-3 z_p keeps
-/// planes that face the camera whole, e_l = 1e-4 l_p is rounding. Pixels that are not known neither
-/// give nor take, and become 0. `in` and `out` must not be the same.
+/// grad z is that of the pixel's own plane. The paper does not give e_z and e_l. e_z = 1e-3 z_p
+/// keeps rounding of depth from splitting planes that face the camera; e_l = 1e-4 l_p covers
+/// rounding. Pixels that are not known are left out and become 0. `in` and `out` must not be the
+/// same.
 void svgf_pass_tile(const SvgfPass& pass, const SvgfImage& in, const Rect& tile, SvgfImage& out);
 
 /// w of the geometry alone, between pixels p and q that show surfaces.

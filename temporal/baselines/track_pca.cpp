@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::uint32_t kChunk = 2048;  // tracks that one thread handles at a time
 constexpr int kMostBases = 8;
-// Few frames may not tell all bases apart. Of the largest diagonal entry: far below any noise.
+// Few frames may not separate all bases. A share of the largest diagonal entry, far below noise.
 constexpr double kRidge = 1e-6;
 
 using Eigen::Index;

@@ -1,4 +1,4 @@
-// Principal components of the light at points that are not seen in every frame.
+// PCA of the light at points that are not visible in every frame.
 #pragma once
 
 #include <Eigen/Dense>
@@ -10,7 +10,7 @@ namespace eigenlight {
 
 struct TrackPcaOptions {
   int bases = 8;             ///< [1, 8] N
-  int frames_per_basis = 4;  ///< [1, 64] a point seen in n frames takes at most n / this bases
+  int frames_per_basis = 4;  ///< [1, 64]; a point visible in n frames gets at most n / this bases
   int sweeps = 4;            ///< [0, 100] of least squares, where points are missing in frames
 
   void validate() const;  ///< throws std::invalid_argument naming the field
@@ -22,11 +22,11 @@ struct TrackPcaOptions {
 /// squares: with every point in every frame that is the PCA of the sequence, by way of its T x T
 /// Gram matrix instead of the huge covariance matrix of its points.
 ///
-/// Points that some frames do not show, or show without usable light, are left out of the pairs of
-/// frames that they are missing in. Weights and bases then take turns in least squares over what is
-/// there; a full sequence needs no such sweep. Bases are ordered by their energy; points of few
-/// frames have only the first ones, at least one. All sums in double and in an order that does not
-/// depend on threads.
+/// A point that a frame does not show, or shows without usable light, is left out of all pairs with
+/// that frame. Weights and bases are then fitted in turn by least squares to the light that exists;
+/// a complete sequence needs no such sweep. Bases are ordered by their energy. Points of few frames
+/// have only the first ones, at least one. All sums are in double, in an order that does not depend
+/// on threads.
 class TrackPca {
  public:
   TrackPca(const PointTracks& tracks, const TrackPcaOptions& options);

@@ -6,17 +6,16 @@
 namespace eigenlight {
 namespace {
 
-// Forgetting per frame: coefficients are remembered as long as light is.
+// Share of the statistics that each frame keeps: coefficients are remembered as long as light.
 constexpr double kLambda = 1.0 - 1.0 / static_cast<double>(kLongestAge);
 
-// What a newborn basis knows, in frames' worth: the spatial filter that made it averaged some
-// hundred pixels, but at the price of detail.
+// Weight of a new basis in frames. It is a mean over some hundred pixels, but has lost detail.
 constexpr double kBirthInformation = 8.0;
 
-// Frames between births: the last one must have had the time to show what it explains.
+// Frames between births: coefficients of the last new basis need time to settle.
 constexpr int kBirthInterval = 4;
 
-// Frames' worth of use below which a basis is forgotten.
+// Use in frames below which a basis is retired.
 constexpr double kForgotten = 0.05;
 
 int checked(int bases) {
@@ -56,7 +55,7 @@ SmallMatrix CoefficientHistory::normalized(int tile) const {
 
 void CoefficientHistory::learn(const CoefficientField& coefficients,
                                CoefficientField& learning_rates) {
-  since_birth_ = std::min(since_birth_ + 1, kBirthInterval);  // runs have no end
+  since_birth_ = std::min(since_birth_ + 1, kBirthInterval);  // must not overflow in long runs
   const int rank = active();
   parallel_for(tiles_, [&](int tile) {
     const auto delta = coefficients.tile(tile);

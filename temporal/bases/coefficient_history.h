@@ -1,5 +1,5 @@
-// Statistics of each tile's coefficients over past frames: how much every basis has been used, and
-// hence how fast it learns.
+// Statistics of each tile's coefficients over past frames. They set the learning rate of each
+// basis.
 #pragma once
 
 #include <vector>
@@ -14,12 +14,12 @@ namespace eigenlight {
 /// ...) of past frames, lambda = 1 - 1/64 (the memory of the longest age). R_00 counts frames.
 ///
 /// With M = R / R_00 the mean of c c^T, recursive least squares of u on c gives each basis its
-/// share of what a pixel of age n did not expect:
+/// share of the residual r of a pixel of age n:
 ///   V_k += q_k r s / (n + h s),   q = M^-1 c,   h = c^T q
-/// (subspace tracking by projection approximation, PAST, Yang 1995). For bases as CCIPCA has them,
-/// with uncorrelated coefficients of mean square M_kk, it is Algorithm 1 of Chen 2012: c_k r / M_kk
-/// is its step and w = 1/n its weight. Unlike there a step can never overshoot: it changes the
-/// prediction of the current frame by the fraction h / (n + h) of the residual.
+/// (subspace tracking by projection approximation, PAST, Yang 1995). For uncorrelated coefficients
+/// of mean square M_kk, as in CCIPCA, it is Algorithm 1 of Chen 2012, with step c_k r / M_kk and
+/// weight w = 1/n. Unlike there, a step never overshoots: it changes the prediction of the current
+/// frame by the fraction h / (n + h) of the residual.
 ///
 /// A slot k >= 1 holds the same basis in all tiles of the image, because coefficients are
 /// interpolated between tiles.
@@ -43,7 +43,8 @@ class CoefficientHistory {
   [[nodiscard]] int free_slot() const;
   /// Basis k was born in this frame with coefficient 1.
   void born(int k);
-  /// Slots whose bases no tile has used for long; they are free now and must be cleared.
+  /// Frees and returns the slots of bases that no tile has used for long. The caller must clear
+  /// them.
   [[nodiscard]] std::vector<int> retire();
 
   void reset();

@@ -38,7 +38,7 @@ struct Used {
 Used find_used(const TileSums& sums, int bases) {
   Used used;
   for (int k = 0; k < bases; ++k) {
-    // Below 1e-10 of the first basis' energy a basis is float noise of the warp.
+    // Below 1e-10 of the energy of the first basis, a basis is rounding error of the warp.
     if (sums.gram[static_cast<std::size_t>(packed(k, k))] > 1e-10 * sums.gram[0]) {
       used.basis[static_cast<std::size_t>(used.count++)] = k;
     }
@@ -54,8 +54,8 @@ SmallMatrix regular_gram(const TileSums& sums, const Used& used) {
       const int i = used.basis[static_cast<std::size_t>(b)];
       gram(a, b) = gram(b, a) = sums.gram[static_cast<std::size_t>(packed(i, j))];
     }
-    // A ridge of 1e-6 of its own energy keeps nearly parallel bases apart (condition <= 1e6). Not
-    // on the first: a light that falls to 1e-6 would be taken for 2e-6.
+    // A ridge of 1e-6 of its energy bounds the condition of nearly parallel bases by 1e6. The first
+    // basis has none: a light that falls to 1e-6 would be estimated as 2e-6.
     if (a > 0) gram(a, a) *= 1.0 + 1e-6;
   }
   return gram;

@@ -9,12 +9,12 @@
 
 namespace eigenlight {
 
-/// Side of a coefficient tile in pixels. 32 measured better than 16
-/// (docs/experiments/2026-11-prototype.md), and is half a segment.
+/// Side of a coefficient tile in pixels, half a segment. 32 gives less error than 16
+/// (docs/experiments/2026-11-prototype.md).
 inline constexpr int kCoefficientTile = 32;
 
 struct ShrinkOptions {
-  /// [0, 100] noise variances that are taken off each squared coefficient; see solve_coefficients.
+  /// [0, 100] noise variances subtracted from each squared coefficient; see solve_coefficients().
   double noise = 4.0;
 
   void validate() const;  ///< throws std::invalid_argument naming the field
@@ -62,8 +62,7 @@ class CoefficientField {
 /// Least squares for u = V_0 + sum_k delta_k V_k over each tile's overlapping window (its 3 x 3
 /// neighbors, tent weights (2 - |dx|)(2 - |dy|) / 4): G delta = d, G_ij = <V_i, V_j>,
 /// d_i = <V_i, u - V_0>. This is Chen 2012's projection (section 3.3), solved jointly because
-/// warped bases are not orthogonal, and measured on bases that do not hold this frame yet (leave
-/// one out).
+/// warped bases are not orthogonal. The bases do not contain this frame yet (leave one out).
 ///
 /// Each delta_k is then shrunk by its own noise, delta_k * max(0, 1 - noise var(delta_k) /
 /// delta_k^2) (positive-part James-Stein), with var from TileSums::innovation_variance() about the
@@ -71,8 +70,8 @@ class CoefficientField {
 /// variance about a gain of 1, a light that goes out leaves 0.2 % of itself behind.
 ///
 /// `expected` holds the mean square m of delta_k over past frames (entry tile * K + k), or is
-/// empty. Where the Wiener factor m / (m + var) is larger than the factor above, it is used
-/// instead: a basis that has been in use is trusted.
+/// empty. The Wiener factor m / (m + var) replaces the factor above where it is larger: bases that
+/// were used in past frames are shrunk less.
 ///
 /// Bases without energy get delta 0. The gain 1 + delta_0 is at least 0. `sums` holds one entry per
 /// tile of the field's grid.

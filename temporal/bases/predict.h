@@ -19,9 +19,9 @@ struct PredictOutputs {
 /// for the pixels of a coefficient tile.
 ///
 /// The variance follows a gain c_0 that jumps: variance <- g^2 variance, with g = c_0 / 2 above 2,
-/// g = 2 c_0 below 1/2, and 1 between. Smaller changes are left to the running mean of variances:
-/// one light of several changes the noise in no known way (scaling by c_0^2 always gave a relMSE of
-/// 0.055 instead of 0.046 in `atrium --perturb lights` at 320x180).
+/// g = 2 c_0 below 1/2, and 1 between. The running mean of variances follows smaller changes: if
+/// one of several lights changes, the change of the noise is unknown. (Scaling by c_0^2 always gave
+/// a relMSE of 0.055 instead of 0.046 in `atrium --perturb lights` at 320x180.)
 void predict_tile(const BasisField& bases, const CoefficientField& coefficients, const Rect& tile,
                   const PredictOutputs& out);
 

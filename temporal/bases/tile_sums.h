@@ -17,7 +17,7 @@ inline constexpr float kLargestLight = 1e18f;
 /// Rows summed in float before the sums go to double. Call accumulate_tile() with multiples of it.
 inline constexpr int kSumRows = 4;
 
-/// Frames that light, and the statistics of its coefficients, are remembered at most.
+/// Largest number of frames that light and the statistics of its coefficients are remembered.
 inline constexpr float kLongestAge = 64.0f;
 
 /// Deviations beyond which a pixel's innovation loses influence.

@@ -29,8 +29,8 @@ struct UpdateOutputs {
 ///   V_k <- V_k + q_k (correction / h + r s / (n + h s))
 /// so that sum_k c_k V_k moves by the whole correction and by h s / (n + h s) of r. With one basis
 /// this is the running mean. A newborn basis is set to the correction, with c_k = 1. A new pixel
-/// has n = 0 and starts at the V of least energy that explains u. Pixels without usable samples
-/// keep their history; pixels without history as well stay 0.
+/// has n = 0 and starts at the V of least energy that reproduces u. Pixels without usable samples
+/// keep their history, or stay 0 without history.
 void update_tile(const UpdateInputs& in, const Rect& tile, const UpdateOutputs& out);
 
 }  // namespace eigenlight

@@ -11,9 +11,8 @@
 namespace eigenlight {
 namespace {
 
-// The gate opens from 3 % significant blocks, over another 4 %: more than chance makes under a
-// steady light, where the correction would only cost time. A sun that sweeps through the atrium
-// makes a third.
+// The gate starts to open at 3 % significant blocks and is open at 7 %. Under a steady light chance
+// gives less, and the correction would only cost time. A moving sun in the atrium gives a third.
 constexpr double kGateStart = 0.03, kGateRange = 0.04;
 
 }  // namespace
@@ -62,7 +61,7 @@ void Correction::count_blocks(const CorrectionInputs& in, const Rect& area) {
   for_needed_cells(area, [&](const Tile& cells) { load_cells(in, cells, cells_); });
 }
 
-// Calls body(cells) for those of the area that the last frame needed, tile by tile.
+// Calls body(cells) for the cells of the area that the last frame needed, tile by tile.
 template <typename Body>
 void Correction::for_needed_cells(const Rect& area, const Body& body) const {
   const int width = grid_.tile_width(), height = grid_.tile_height();
@@ -93,7 +92,7 @@ double Correction::smooth(const CorrectionInputs& in, Plane<float>& innovation) 
       if (chosen[cells] != 0) body(cells);
     });
   };
-  // This and the spreading read many planes and need nothing of the rows around: line by line.
+  // This loop and the spreading read many planes and no neighboring rows, so they go line by line.
   for_each_segment(grid_, [&](const Tile& row) {
     if (loaded_[row] == 0 || was_loaded_[row] != 0) return;
     place_cells(in.guides.surface, row, cells_);
@@ -125,8 +124,8 @@ void Correction::count_tiles() {
   }
 }
 
-// False if all gates are closed. A tile is open if it or a neighbor has a gate that is: gates are
-// interpolated.
+// Returns false if all gates are closed. A tile is open if its gate or that of a neighbor is open,
+// because gates are interpolated.
 bool Correction::open_gates() {
   const TileGrid& grid = gate_.grid();
   open_.fill(0);
@@ -136,7 +135,7 @@ bool Correction::open_gates() {
       all += tile_blocks_[tile].all;
       significant += tile_blocks_[tile].significant;
     });
-    // One block alone is no region: in a small image chance would open the gate with it.
+    // One block is subtracted: in a small image a single block, by chance, would open the gate.
     const double share = all > 0.0 ? (significant - 1.0) / all : 0.0;
     const double change = std::clamp((share - kGateStart) / kGateRange, 0.0, 1.0);
     change_[index] = static_cast<float>(change);
@@ -151,14 +150,14 @@ bool Correction::open_gates() {
   return skipped_ < static_cast<std::int64_t>(grid.extent().pixels());
 }
 
-// Forgets what an earlier frame lacked.
+// Clears the correction of an earlier frame.
 void Correction::close_tile(const Tile& tile) {
   if (is_open(tile.index) || was_open_[tile] == 0) return;
   for (auto& plane : correction_) fill_rect(plane, tile, 0.0f);
 }
 
-// Cells are filtered that a pixel of an open tile can reach, and loaded that the filter can reach
-// from there.
+// Marks the cells that pixels of open tiles read (to be filtered), and the cells that the filter
+// reads from there (to be loaded).
 void Correction::choose_cells() {
   wanted_.fill(0);
   const auto mark = [&](PerTile<std::uint8_t>& chosen, const Rect& area, int reach) {
@@ -195,8 +194,8 @@ void Correction::find_factor(const Tile& cells) {
   }
 }
 
-// Sums of f and of the cells that know something over a row of 3 x 3 windows, for the cells [x0,
-// x0 + count); nothing lies beside the image.
+// Sums f and the number of cells with a confirmed pixel over 3 x 3 windows, for the cells [x0, x0 +
+// count) of a row. Cells outside the image count as 0.
 void Correction::sum_windows(int x0, int y, int count, WindowRow& sums) const {
   const Extent extent = cells_.extent();
   const int first = std::max(x0 - 1, 0), last = std::min(x0 + count + 1, extent.width);

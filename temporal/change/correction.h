@@ -1,4 +1,4 @@
-// Adds to the history at once what no basis explains but many neighbors agree on.
+// Adds changes of light to the history that many neighbors share and no basis explains.
 #pragma once
 
 #include "frame/frame.h"
@@ -23,12 +23,12 @@ struct CorrectionOptions {
 /// variance q, and
 ///   correction = m f g,   f = max(0, 1 - significance * q / luminance(m)^2), averaged over
 ///   those of 3 x 3 cells that have a confirmed pixel,
-/// is what the prediction lacks. So a light that changes in a way that no basis knows is followed
-/// within the frame, by its smoothness in space instead of its history.
+/// is added to the prediction. A change of light that no basis explains is thus followed within
+/// the frame, because it is smooth in space.
 ///
-/// g in [0, 1] opens where light does change: it grows with the share of 8 x 8 blocks whose mean
-/// residual exceeds three of its standard deviations, over a coefficient tile and its neighbors,
-/// interpolated between tiles. Where it is closed nothing is filtered.
+/// The gate g in [0, 1] opens where light changes. It grows with the share of 8 x 8 blocks, over a
+/// coefficient tile and its neighbors, whose mean residual exceeds three standard deviations. It is
+/// interpolated between tiles. Nothing is filtered where g is 0.
 class Correction {
  public:
   /// `taps` say which pixels show the same surface. Throws std::invalid_argument on a bad size or
@@ -47,12 +47,12 @@ class Correction {
   /// Computes correction(), and subtracts its luminance from `innovation`, which may be that of the
   /// inputs. Returns the share of confirmed pixels that are corrected by more than half.
   double smooth(const CorrectionInputs& in, Plane<float>& innovation);
-  /// Zero where the prediction lacks nothing.
+  /// Zero where nothing is added.
   [[nodiscard]] const Planes<3>& correction() const { return correction_; }
   /// Whether the last frame may have corrected anything in a tile of the coefficients' grid.
   [[nodiscard]] bool is_open(int tile) const { return open_[tile] != 0; }
-  /// g of a tile of the coefficients' grid in the last frame, [0, 1], whether filtering is gated or
-  /// not: how surely its light changed in a way no basis knows.
+  /// g of a tile of the coefficients' grid in the last frame, [0, 1], even if filtering is not
+  /// gated: how certain it is that its light changed in a way that no basis explains.
   [[nodiscard]] float change(int tile) const { return change_[tile]; }
   /// Pixels of the last frame in tiles that were not open: nothing was filtered there.
   [[nodiscard]] std::int64_t skipped() const { return skipped_; }

@@ -1,4 +1,4 @@
-// The innovation test: is the local mean of the residual more than noise explains?
+// The innovation test: does the local mean of the residual exceed its noise?
 #pragma once
 
 #include "frame/frame.h"
@@ -13,7 +13,7 @@ struct InnovationOptions {
   float threshold = 2.0f;
   /// [1, 255] frames: ages saturate here.
   float max_age = kLongestAge;
-  bool test = true;  ///< false: ages grow whatever the residual says, b = 0
+  bool test = true;  ///< false: b = 0, ages grow whatever the residual is
 
   void validate() const;  ///< throws std::invalid_argument naming the field
 };

@@ -65,7 +65,7 @@ const Planes<3>* EigenDenoiser::step(FrameSource& source) {
   return &layers_.front().output();
 }
 
-// A frame, its surfaces, and their geometry at the grain of the correction.
+// Reads a frame, counts its surfaces, and reads their geometry for the cells of the correction.
 bool EigenDenoiser::read(FrameSource& source) {
   if (!shared_.read(source, layers())) return false;
   report_ = {};
@@ -79,8 +79,8 @@ bool EigenDenoiser::read(FrameSource& source) {
   return true;
 }
 
-// History comes to where its surfaces are now. The same visit sums the products of bases and light
-// that project() solves for.
+// Reprojects history to this frame. The same visit sums the products of bases and light, which
+// project() needs.
 void EigenDenoiser::warp() {
   for (LightLayer& layer : layers_) layer.start_warp(shared_);
   for_each_strip(shared_.tiles(), [&](const Strip& strip) {

@@ -9,12 +9,12 @@
 
 namespace eigenlight {
 
-/// The frame loop. Its steps, in order, have the names of Stage; docs/method.md has their
-/// equations. The filtered picture is the output; history stays unfiltered, so that blur never adds
-/// up. The next frame's filter reads the picture for its weights alone.
+/// The frame loop. Its steps have the names of Stage; docs/method.md has their equations. The
+/// filtered picture is the output. History stays unfiltered, so that blur does not accumulate. The
+/// next frame's filter reads the picture only to compute its weights.
 ///
-/// Geometry is worked out once per frame, in SharedFrame; all else is done for each layer of light,
-/// in LightLayer. The two share visits to the pixels where that saves a pass over memory.
+/// SharedFrame computes the geometry of a frame once; LightLayer holds everything else, once for
+/// each layer of light. The a-trous passes filter all layers in one visit.
 class EigenDenoiser final : public Denoiser {
  public:
   /// Throws std::invalid_argument on a bad size, option, or number of bases or layers.
@@ -22,13 +22,13 @@ class EigenDenoiser final : public Denoiser {
 
   [[nodiscard]] const Planes<3>* step(FrameSource& source) override;
   [[nodiscard]] int layers() const { return static_cast<int>(layers_.size()); }
-  /// What step() made of a layer of light: radiance over its color.
+  /// The denoised layer: radiance over its color.
   [[nodiscard]] const Planes<3>& output(int layer) const { return at(layer).output(); }
   /// Variance of the luminance of output(layer).
   [[nodiscard]] const Plane<float>& variance(int layer) const { return at(layer).variance(); }
   [[nodiscard]] const Frame& frame() const override { return shared_.frame(); }
   [[nodiscard]] const FrameReport& report() const override { return report_; }
-  /// Of the first layer.
+  /// Ages of the first layer.
   [[nodiscard]] const Plane<float>& age() const override { return layers_.front().age(); }
   void reset() override { shared_.reset(); }
   void save(StateWriter& out) const override;

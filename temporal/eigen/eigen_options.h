@@ -21,11 +21,11 @@ struct EigenOptions {
   BudgetOptions budget;
   GuidedOptions guided;
   AtrousOptions atrous;
-  /// [0, 255] frames: pixels of lower age take the guided filter's value in the share 1 - age /
-  /// limit.
+  /// [0, 255] frames: pixels of lower age are blended with the guided filter's value, which has the
+  /// weight 1 - age / limit.
   float young_age = 2.0f;
-  /// [1, 255] frames: the longest age where light changes in ways that no basis knows. Filters
-  /// remove noise later, but not the remains of an old light.
+  /// [1, 255] frames: the longest age where light changes in ways that no basis explains. Filters
+  /// remove the additional noise, but could not remove old light.
   float max_age_changing = 12.0f;
   /// [1, 255] frames: the longest age at edges whose history is blended (edges.h); at most 2/3 of
   /// the limit of the pixels around. Values of innovation.max_age or more turn the rule off.
@@ -39,7 +39,7 @@ struct EigenOptions {
   bool project = true;     ///< solve for coefficients; else the light is taken to be steady
   bool correct = true;     ///< add the smoothed innovation
   bool filter = true;      ///< a-trous passes over the output
-  bool look_back = true;   ///< they find edges of light in the last output as well
+  bool look_back = true;   ///< the passes also find edges of light in the last output
   bool skip_still = true;  ///< no taps for frames in which nothing moves
   bool skip_empty = true;  ///< no work in tiles without surface
 

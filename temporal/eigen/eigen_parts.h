@@ -1,4 +1,4 @@
-// The parts of `eigenlight` that can be turned off, to see what each is worth.
+// The parts of `eigenlight` that can be turned off, to measure what each contributes.
 #pragma once
 
 #include <span>

@@ -188,7 +188,7 @@ void LightLayer::make_room(int bases) {
   bases_.swap();
 }
 
-// What innovation_tile() leaves to be done: the noise of new pixels, and ages that must stay short.
+// The noise of new pixels, and limits on ages, which innovation_tile() does not handle.
 void LightLayer::test_tile(const SharedFrame& shared, const Tile& tile) {
   if (shared.is_empty(tile)) return clear_tile(tile);
   const Planes<3>& light = shared.frame().lights[static_cast<std::size_t>(index_)].radiance;
@@ -197,8 +197,8 @@ void LightLayer::test_tile(const SharedFrame& shared, const Tile& tile) {
   shorten_ages(shared, tile);
 }
 
-// Where light changes in ways that no basis knows, memory ends sooner: the longest age of a tile
-// lies between the two by the share that each has in the weight of a frame.
+// Where light changes in ways that no basis explains, the longest age is lower. The weight of a
+// frame, 1 / age, is interpolated between both limits.
 float LightLayer::longest_age(const Tile& tile) const {
   const float change = options_.correct ? correction_.change(tile.index) : 0.0f;
   const float most = options_.innovation.max_age;
@@ -228,7 +228,7 @@ void LightLayer::update_row(const SharedFrame& shared, const Strip& row) {
   });
 }
 
-// Nothing is left of what an earlier frame showed there.
+// Forgets what an earlier frame showed there.
 void LightLayer::clear_tile(const Tile& tile) {
   for (auto& plane : output_) fill_rect(plane, tile, 0.0f);
   fill_rect(new_age_, tile, 0.0f);

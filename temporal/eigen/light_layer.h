@@ -1,4 +1,4 @@
-// One layer of light: its history, and the steps that follow it.
+// One layer of light: its history and its steps of the frame loop.
 #pragma once
 
 #include "frame/ping_pong.h"
@@ -10,9 +10,9 @@
 
 namespace eigenlight {
 
-/// Everything that a layer of light has of its own: bases and ages, the variance of its noise, the
-/// statistics of its coefficients, the firefly bound, the correction, and the filter of its output.
-/// Calls come in the order of the declarations, once a frame.
+/// The state of one layer of light: bases and ages, the variance of its noise, the statistics of
+/// its coefficients, the firefly bound, the correction, and the filter of its output. The functions
+/// are called once a frame, in the order of their declarations.
 class LightLayer {
  public:
   /// `index`: which of FrameInput::lights. Throws std::invalid_argument on a bad size or option.
@@ -20,12 +20,12 @@ class LightLayer {
 
   // While the frame's surfaces are read.
 
-  /// Takes in the geometry of two rows, for the cells of the correction.
+  /// Reads the geometry of two rows for the cells of the correction.
   void place_cells(const SharedFrame& shared, const Rect& rows) {
     if (options_.correct) correction_.read_geometry(shared.frame().surface, rows);
   }
 
-  // warp: history is brought to this frame, and the inner products of its tiles are summed.
+  // warp: history is reprojected to this frame, and the inner products of its tiles are summed.
 
   void start_warp(const SharedFrame& shared);
   /// Warps one row of a strip; empty tiles forget their history. `taps`: of each tile.
@@ -41,9 +41,9 @@ class LightLayer {
 
   /// project: coefficients of the bases.
   void project();
-  /// predict: the light that history foresees, and what the samples differ from it by. Band by
-  /// band, so that each part finds in the cache what the part before it left: samples are merged,
-  /// light is predicted, fireflies are counted, and so are the blocks of the correction.
+  /// predict: samples are merged, light is predicted, the residual is computed, and fireflies and
+  /// blocks of the correction are counted. All of this is done band by band, so that each part
+  /// finds its input in the cache.
   void predict(const SharedFrame& shared, bool resampled);
   /// bound: fireflies are scaled back.
   void bound(const SharedFrame& shared);
@@ -51,10 +51,10 @@ class LightLayer {
   void correct(const SharedFrame& shared);
   /// learn: statistics of the coefficients, and whether a basis is born.
   void learn();
-  /// update: the innovation test sets ages, and the bases take the frame in.
+  /// update: the innovation test sets ages, and the bases are updated by the frame.
   void update(const SharedFrame& shared);
 
-  // filter: from the estimate to the picture.
+  // filter: the estimate becomes the picture.
 
   void fill_young(const SharedFrame& shared);
   /// What the a-trous passes filter in place.
@@ -90,8 +90,8 @@ class LightLayer {
   EigenOptions options_;
   TileGrid tiles_;  // of coefficients
 
-  // History. `before` is that of the frame before, `now` the same brought to this one, where the
-  // frame is then taken in.
+  // History. `before` is that of the last frame; `now` is the same reprojected to this frame, and
+  // later updated by it.
   PingPong<BasisField> bases_;
   PingPong<Plane<float>> variance_;  // of one frame's luminance
   CoefficientHistory coefficient_history_;
@@ -107,7 +107,7 @@ class LightLayer {
   PerTile<PixelCounts> counts_;  // fresh and non-finite ones
   std::int64_t bounded_ = 0, skipped_guided_ = 0;
 
-  // This frame's light, extra samples included, until predict() takes from it what history expects.
+  // This frame's light with its extra samples, until predict() subtracts the prediction.
   Planes<3> residual_;
   Plane<float> innovation_, expected_;  // luminance of the residual, and of the prediction
   Plane<float> samples_, old_age_, new_age_, output_variance_;

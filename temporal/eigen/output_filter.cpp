@@ -27,7 +27,7 @@ void OutputFilter::warp(const TapSegment& taps, const Rect& row) {
   if (looks_back_) warp_plane(shown_.before, taps, row, shown_.now);
 }
 
-// New pixels have not been shown.
+// The last picture did not show new pixels.
 const Plane<float>* OutputFilter::earlier(const Plane<float>& old_age) {
   if (!looks_back_) return nullptr;
   for_each_segment(tiles_, [&](const Tile& row) {
@@ -48,8 +48,7 @@ void OutputFilter::keep(const Planes<3>& picture) {
   });
 }
 
-// The share that young pixels keep of their own grows with age; so does the share of their
-// variance.
+// The weight of the pixel's own light grows with age, and so does the variance that it keeps.
 std::int64_t OutputFilter::fill_young(const FilterInputs& in, Planes<3>& output,
                                       Plane<float>& variance) {
   const std::int64_t skipped = guided_.process({in.frame, output, in.age, in.young}, guided_light_);
@@ -57,7 +56,7 @@ std::int64_t OutputFilter::fill_young(const FilterInputs& in, Planes<3>& output,
   for_each_tile(tiles_, [&](const Tile& tile) {
     for (int y = tile.y0; y < tile.y1; ++y) {
       for (int x = tile.x0; x < tile.x1; ++x) {
-        // Without geometry no neighbor can stand in.
+        // Pixels without geometry have no neighbors on their surface.
         if (in.young(x, y) == 0 || std::isinf(in.frame.surface.depth(x, y))) continue;
         const float own = in.age(x, y) / options_.young_age;
         for (std::size_t c = 0; c < 3; ++c) {

@@ -1,4 +1,4 @@
-// From the estimate of each pixel to the picture: what surroundings and the last picture know.
+// Spatial filters of one layer's output.
 #pragma once
 
 #include "frame/ping_pong.h"
@@ -25,8 +25,8 @@ class OutputFilter {
   void start_warp() { shown_.swap(); }
   /// Brings the luminance of the last picture to a row of this frame.
   void warp(const TapSegment& taps, const Rect& row);
-  /// Gives young pixels of the estimate the guided filter's value in the share that their age lacks
-  /// of young_age; their variance falls with it. Returns the pixels in tiles without young ones.
+  /// Blends young pixels of the estimate with the guided filter's value, which has the weight 1 -
+  /// age / young_age, and lowers their variance. Returns the pixels in tiles without young ones.
   std::int64_t fill_young(const FilterInputs& in, Planes<3>& output, Plane<float>& variance);
   /// The luminance of the last picture for the a-trous passes, NaN at new pixels, whose `old_age`
   /// is 0. Null if the passes do not look back.

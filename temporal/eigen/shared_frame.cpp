@@ -34,7 +34,7 @@ bool SharedFrame::read(FrameSource& source, int layers) {
   EL_CHECK(frame_.lights.size() == static_cast<std::size_t>(layers),
            "frame {} has {} layers of light, expected {}", frame_.index, frame_.lights.size(),
            layers);
-  // These are changed where they cannot be used, and kept for the next frame.
+  // These planes are edited where they are unusable, and kept for the next frame.
   own(frame_.surface.depth);
   own(frame_.surface.id);
   for (auto& plane : frame_.surface.normal) own(plane);

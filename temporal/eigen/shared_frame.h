@@ -8,23 +8,23 @@
 
 namespace eigenlight {
 
-/// The frame at hand, and all of its geometry that is worked out once, however many layers it has.
+/// The current frame, and its geometry, which is computed once for all layers of light.
 class SharedFrame {
  public:
   /// Throws std::invalid_argument on a bad size or option.
   SharedFrame(Extent extent, const EigenOptions& options);
 
-  /// Pulls the next frame from `source`; the one before becomes history. False at the end of the
+  /// Reads the next frame from `source`; the last one becomes history. False at the end of the
   /// sequence. Throws std::invalid_argument on a frame of another size or number of layers.
   [[nodiscard]] bool read(FrameSource& source, int layers);
   /// Counts the surfaces of a row of a tile. Those without usable guides lose their geometry
   /// (frame/guides.h).
   void check_surfaces(const Tile& row);
-  /// Where the pixels of a row were in the frame before, and which of them lie at edges.
+  /// Finds where the pixels of a row were in the last frame, and which of them lie at edges.
   void find_taps(const Tile& row, TapSegment& taps);
   /// Plans extra samples for the pixels of low `age` (sample_budget.h). Returns how many.
   [[nodiscard]] std::int64_t plan_samples(const Plane<float>& age);
-  /// The frame at hand has been denoised: until the next read() it is the caller's to look at.
+  /// Ends the work on the current frame. The caller may read it until the next read().
   void finish() { is_finished_ = true; }
   /// Forgets the surfaces of the frame before, as at a cut.
   void reset();

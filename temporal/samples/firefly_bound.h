@@ -1,4 +1,4 @@
-// Samples far beyond what history and neighbors expect may move a pixel only so far.
+// Limits the influence of samples that are far brighter than history and neighbors predict.
 #pragma once
 
 #include <cstdint>
@@ -18,9 +18,9 @@ struct FireflyOptions {
   /// [1, 1000] standard deviations that a sample may be off its prediction. Exponential noise goes
   /// beyond 8 with a chance of 0.012 %, and so loses 0.1 % of its light at most.
   float deviations = kOutlier;
-  /// [1, 1000] times the light around it that a new pixel may be as bright as.
+  /// [1, 1000] largest brightness of a new pixel, over that of the light around it.
   float times = 16.0f;
-  /// (0, 1] share of the pixels around that may be off so far: more are a change of the light.
+  /// (0, 1] largest share of outliers around; if there are more, the light has changed.
   float share = 0.125f;
 
   void validate() const;  ///< throws std::invalid_argument naming the field
@@ -59,25 +59,25 @@ struct FireflyOutputs {
 /// the pixel's own block (an edge of light that moves has them side by side, fireflies have not),
 ///   - light is scaled back to min((n + s) / (s sqrt(n)), `deviations`) sigma from the prediction:
 ///     the mean of n + s samples moves by one of its own deviations, sigma / sqrt(n), at most;
-///   - the pixel is no longer confirmed: it is no witness of what the light around does.
-/// Where more are, the light itself has changed and nothing is done. A new pixel may be `times` as
-/// bright as (mean sqrt(luminance))^2 over the usable pixels of those blocks, which a few fireflies
-/// hardly move. Light that is bright in every frame is so learned step by step, light that was
-/// bright once leaves no trail.
+///   - the pixel counts as not confirmed: the correction and the innovation test ignore it.
+/// Where there are more outliers, the light itself has changed and nothing is bounded. A new pixel
+/// may be `times` as bright as (mean sqrt(luminance))^2 over the usable pixels of those blocks,
+/// which a few fireflies hardly change. Light that is bright in every frame is thus learned step by
+/// step; light that was bright once leaves no trail.
 class FireflyBound {
  public:
   /// Throws std::invalid_argument on a bad size or option.
   FireflyBound(Extent extent, const FireflyOptions& options);
 
-  /// Counts the pixels of `area`, whose edges are multiples of 8 or those of the image, and changes
-  /// nothing. To be called for all of the image, in any order and on any thread, before bound().
+  /// Counts the pixels of `area`, whose edges are multiples of 8 or those of the image. Call it for
+  /// the whole image before bound(), in any order and on any thread.
   void count(const FireflyInputs& in, const FireflyOutputs& out, const Rect& area);
-  /// Returns how many pixels it bounded. Calls changed(block), on any thread, after those of a
-  /// block were; of one row of blocks from left to right.
+  /// Bounds the outliers and returns their number. Calls changed(block) for each block that it
+  /// changed, on any thread; within a row of blocks from left to right.
   std::int64_t bound(const FireflyInputs& in, const FireflyOutputs& out,
                      const std::function<void(const Tile&)>& changed);
-  /// What a new pixel of each block of 8 x 8 may be as bright as; infinite in blocks that no new
-  /// pixel is near.
+  /// The largest brightness of a new pixel in each block of 8 x 8; infinite in blocks without a new
+  /// pixel nearby.
   [[nodiscard]] const Plane<float>& brightness() const { return brightness_; }
 
  private:
@@ -85,7 +85,7 @@ class FireflyBound {
   struct Region {
     bool is_steady;    // outliers are few
     bool is_fresh;     // there are new pixels
-    float brightness;  // that a new pixel may have
+    float brightness;  // largest of a new pixel
   };
 
   [[nodiscard]] float deviation(const FireflyInputs& in, int x, int y) const;

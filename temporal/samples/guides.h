@@ -1,4 +1,4 @@
-// Which pixels of a frame show surfaces that can be followed.
+// Counts the pixels of a frame whose surfaces can be reprojected.
 #pragma once
 
 #include "frame/guides.h"

@@ -1,4 +1,4 @@
-// How many pixels of a frame have a surface, history, and samples that can be used.
+// Counts of pixels with a surface, with history, and with usable samples.
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// This frame's samples, regular and granted ones, as one mean per pixel; and how much they scatter.
+// The mean of a pixel's regular and extra samples, and the variance of new pixels.
 #pragma once
 
 #include "frame/frame.h"
@@ -34,9 +34,9 @@ struct FreshInputs {
 };
 
 /// One frame's variance at new pixels (age 0): that of luminance over the usable pixels of the 7 x
-/// 7 around, whose structure counts as noise until history tells them apart; 0 where there is but
-/// one. No luminance counts for more than its block's `brightness` (FireflyBound): a firefly in
-/// the first frame must not make room for all that follow.
+/// 7 around. Texture counts as noise until history separates them. 0 if only one pixel is usable.
+/// Luminance is clamped to the `brightness` of its block (FireflyBound): otherwise a firefly in the
+/// first frame would raise the bound for all fireflies that follow.
 void fresh_variance(const FreshInputs& in, const Rect& tile, Plane<float>& variance);
 
 struct EstimateInputs {
@@ -51,7 +51,7 @@ struct EstimateOutputs {
   Plane<std::uint8_t>& young;  ///< 1 on young surfaces, else 0
 };
 
-/// What the spatial filters are told of the pixels of `tile`.
+/// Fills the inputs of the spatial filters for the pixels of `tile`.
 void estimate_variance(const EstimateInputs& in, const Rect& tile, const EstimateOutputs& out);
 
 }  // namespace eigenlight

@@ -17,7 +17,7 @@ using test::AtrousScene;
 class AtrousEdge : public ::testing::Test {
  protected:
   AtrousEdge() : scene_(AtrousScene::wall({64, 16})) {
-    scene_.variance.fill(1e4f);  // luminance says nothing
+    scene_.variance.fill(1e4f);  // differences of luminance do not count
     scene_.set_halves(1.0f, 3.0f);
   }
   void for_right_half(const std::function<void(int x, int y)>& visit) {
@@ -44,7 +44,7 @@ TEST_F(AtrousEdge, NormalEdgeIsKept) {
     scene_.guides.surface.normal[0](x, y) = 0.6f;
     scene_.guides.surface.normal[2](x, y) = -0.8f;
   });
-  // Planes that go on at an angle are far off soon, but close to the edge only normals tell.
+  // Close to the edge, planes at an angle differ in their normals only.
   scene_.run({.plane_distance = 1.0f});
   expect_kept();
 }

@@ -18,7 +18,7 @@ using test::random;
 constexpr float kInf = std::numeric_limits<float>::infinity();
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-// Only depth tells the box from the wall behind it, if their normals are the same.
+// Box and wall have the same normal and differ in depth only.
 TEST(GuidedFilter, DepthGuidesOnlyWithNormalDepth) {
   GuidedCase c({96, 64});
   c.flat_wall();

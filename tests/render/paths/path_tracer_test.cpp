@@ -191,7 +191,7 @@ TEST(PathTracer, NoRayStartsInsideTheNextWall) {
       EXPECT_FALSE(geometry.occluded({point.origin, {0, 0, -1}})) << "ray " << i;
     }
   }
-  EXPECT_GT(below, 0);  // the case that the test is about occurs
+  EXPECT_GT(below, 0);  // some hit points lie below the floor
 }
 
 }  // namespace

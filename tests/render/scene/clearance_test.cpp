@@ -34,7 +34,7 @@ float distance_to_cube(const glm::vec3& p) {
   return inside < 0.0f ? -inside : length(max(d, glm::vec3(0.0f)));
 }
 
-TEST(Clearance, DistanceIsThatToTheNearestCube) {
+TEST(Clearance, DistanceIsMeasuredToTheNearestCube) {
   const Clearance clearance(cubes(40));
   for (std::uint32_t i = 0; i < 2000; ++i) {
     const auto random = [i](std::uint32_t k) { return to_unit(hash_key(1U, i, k)); };

@@ -1,4 +1,4 @@
-// What every filter of single frames has to do, whatever its kernel.
+// Tests that every filter of single frames must pass.
 #include <gtest/gtest.h>
 
 #include <functional>

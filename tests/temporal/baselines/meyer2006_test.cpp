@@ -136,7 +136,7 @@ TEST(Meyer2006, LeavesOutNonFiniteLight) {
     EXPECT_TRUE(all_finite(*out));
     EXPECT_LT(relative_error(*out, source, meyer.frame()), 1e-3) << frame;
   }
-  // A pixel that is never finite is 0, and nobody else is.
+  // Only the pixel that is never finite is 0.
   AnalyticOptions never{.frames = 3, .noise = 0.0f};
   never.edit = [](Frame& frame) { frame.lights[0].radiance[0](5, 5) = kNan; };
   AnalyticSource dark(never);

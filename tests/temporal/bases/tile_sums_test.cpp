@@ -118,7 +118,7 @@ TEST(TileSums, LeaveOutUnusablePixels) {
   });
 }
 
-TEST(TileSums, RecoverAGain) {
+TEST(TileSums, GiveTheGainOfTheLight) {
   // With u = 1.5 V_0 everywhere, <V_0, u - V_0> is half of <V_0, V_0>.
   const Extent extent{32, 32};
   Frame frame = make_random_frame({.extent = extent, .sky = false, .non_finite = false}, 2);

@@ -149,7 +149,8 @@ TEST(Correction, UnconfirmedPixelsAreIgnored) {
   EXPECT_NEAR(scene.prediction[0](31, 15), 3.0f, 0.4f);
 }
 
-// Cells of pixels without history once gave a residual of 0, which pulled down what is beside them.
+// A cell of pixels without history must not count as a residual of 0: that would darken the cells
+// beside it.
 TEST(Correction, RegionWithoutHistoryDoesNotDarkenItsNeighbors) {
   Scene whole({96, 64}), half({96, 64});
   whole.set_light(3.0f);
@@ -169,7 +170,7 @@ TEST(Correction, RegionWithoutHistoryDoesNotDarkenItsNeighbors) {
   EXPECT_NEAR(found, wanted, 0.1);
 }
 
-// What the last frame needed is filled while counting, the rest afterwards.
+// Cells that the last frame needed are filled while counting, the others afterwards.
 TEST(Correction, PlacingCellsEarlyDoesNotChangeTheBits) {
   const Extent extent{191, 107};
   Correction seasoned(extent, {}), fresh(extent, {});

@@ -153,7 +153,7 @@ TEST(Innovation, NewPixelsStartAndUnusablePixelsKeepTheirState) {
 }
 
 // A single pixel has no local mean to test.
-TEST(Innovation, SinglePixelAges) {
+TEST(Innovation, SinglePixelGrowsOlder) {
   Scene scene({1, 1});
   scene.innovation(0, 0) = 0.5f;
   scene.samples(0, 0) = 2.0f;

@@ -45,7 +45,7 @@ TEST(EigenDenoiser, ErrorFallsWithTheNumberOfFrames) {
   EXPECT_LT(error[99] * 63.0, 2.5 * error[0]);
 }
 
-// Noise alone, from two runs that differ in nothing else: what filters blur they blur in both.
+// The noise alone, as the difference of two runs with other noise: blur is the same in both.
 double noise_of_last_frame(AnalyticOptions options, const EigenOptions& settings) {
   std::array<Planes<3>, 2> last{make_planes<3>(options.extent), make_planes<3>(options.extent)};
   for (auto& picture : last) {
@@ -72,7 +72,7 @@ TEST(EigenDenoiser, SpatialFilterLowersTheNoise) {
   }
 }
 
-// Dark lines, two pixels wide, on a wall: their own noise says little of them.
+// Dark lines, two pixels wide, on a wall. Their contrast is low compared to their noise.
 TEST(EigenDenoiser, EarlierPictureKeepsFineLight) {
   AnalyticOptions options{.extent = {96, 64}, .frames = 16, .pattern = 0.0f};
   options.slide = {0.4f, 0.2f};

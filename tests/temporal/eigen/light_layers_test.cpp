@@ -62,7 +62,7 @@ TEST(LightLayers, EqualLayersGiveThePictureOfOne) {
   EXPECT_GT(extra, 0);
 }
 
-TEST(LightLayers, ALayerIsFollowedByItsOwnLight) {
+TEST(LightLayers, EachLayerFollowsItsOwnLight) {
   AnalyticOptions options = moving();
   options.noise = 0.0f;
   options.edit = [](Frame& frame) {
@@ -81,7 +81,7 @@ TEST(LightLayers, ALayerIsFollowedByItsOwnLight) {
   }
 }
 
-TEST(LightLayers, AFrameWithAnotherNumberOfLayersIsRefused) {
+TEST(LightLayers, RejectsFramesWithAnotherNumberOfLayers) {
   AnalyticSource source(moving());
   EigenDenoiser denoiser({.extent = moving().extent, .layers = 2});
   EXPECT_THROW((void)denoiser.step(source), std::invalid_argument);
@@ -89,7 +89,7 @@ TEST(LightLayers, AFrameWithAnotherNumberOfLayersIsRefused) {
   EXPECT_THROW(EigenDenoiser({.extent = {8, 8}, .layers = kMaxLights + 1}), std::invalid_argument);
 }
 
-TEST(LightLayers, StateBringsBackEveryLayer) {
+TEST(LightLayers, StateRestoresEveryLayer) {
   AnalyticOptions options = moving();
   options.edit = [](Frame& frame) {
     repeat_first_layer(frame, 2);
@@ -118,7 +118,7 @@ TEST(LightLayers, StateBringsBackEveryLayer) {
   EXPECT_THROW(one.load(again), std::runtime_error);
 }
 
-// A plane's values from the bottom up, in rows that start anywhere, with NaN (or 9) between them.
+// Values of a plane in unaligned rows from the bottom up, with NaN (or 9) between the rows.
 template <typename T>
 class ForeignCopy {
  public:
@@ -164,7 +164,7 @@ struct ForeignFrame {
   std::vector<ForeignCopy<std::uint32_t>> ids;
 };
 
-// Hands out views of memory that belongs to somebody else.
+// A source whose frames are views of other memory.
 class ForeignSource final : public FrameSource {
  public:
   explicit ForeignSource(const AnalyticOptions& options) : source_(options) {}
