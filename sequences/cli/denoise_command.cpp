@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <string>
 
 #include "sequences/cli/job.h"
 #include "sequences/denoise/plan_text.h"
@@ -48,6 +49,14 @@ void add_layer_options(CLI::App& command, DenoiseSettings& settings) {
                      "Regular expression: layers of light to copy as they are");
   command.add_option("--skip", settings.layers.skip,
                      "Regular expression: layers not to look at, only to copy");
+  command
+      .add_option_function<std::string>(
+          "--alpha",
+          [&settings](const std::string& word) {
+            settings.layers.denoises_alpha = word == "denoise";
+          },
+          "keep: copy the alpha of the beauty; denoise: filter it like light [keep]")
+      ->check(CLI::IsMember({"keep", "denoise"}));
   command.add_option("--motion", settings.guides.motion,
                      "What motion vectors mean: cycles, arnold, renderman, vray, optix, none, or "
                      "words such as x,-y,pixels,backward,first [found out]");

@@ -78,9 +78,10 @@ bool all_finite(const Planes<3>& planes, int x, int y) {
 }
 
 // NaN where a channel is not finite or too large to be squared.
-double finite_luminance(const Planes<3>& light, int x, int y) {
+double finite_luminance(const Planes<3>& light, const LuminanceWeights& weights, int x, int y) {
   if (!all_finite(light, x, y)) return std::nan("");
-  const double value = luminance(light, x, y);
+  double value = 0.0;
+  for (std::size_t c = 0; c < 3; ++c) value += weights[c] * static_cast<double>(light[c](x, y));
   return std::abs(value) < 1e18 ? value : std::nan("");
 }
 
@@ -137,7 +138,8 @@ std::vector<double> relative_noise(Extent extent, const Get& get) {
 }  // namespace
 
 std::optional<std::string> check_frozen_seeds(const Planes<3>& before, const Planes<3>& now,
-                                              const Planes<2>& motion) {
+                                              const Planes<2>& motion,
+                                              const LuminanceWeights& weights) {
   const Extent extent = now[0].extent();
   EL_CHECK(before[0].extent() == extent, "light of two frames: {}x{} and {}x{}", extent.width,
            extent.height, before[0].width(), before[0].height());
@@ -150,7 +152,7 @@ std::optional<std::string> check_frozen_seeds(const Planes<3>& before, const Pla
       if (std::abs(mx) > kStill || std::abs(my) > kStill) return;
     }
     Window<1> window;
-    const auto get = [&](int i, int j) { return finite_luminance(now, i, j); };
+    const auto get = [&](int i, int j) { return finite_luminance(now, weights, i, j); };
     if (!read_window(x, y, get, window) || !window.is_noisy()) return;
     // No sample found light: equal in any two frames.
     if (get(x, y) == 0.0) return;
@@ -168,10 +170,11 @@ std::optional<std::string> check_frozen_seeds(const Planes<3>& before, const Pla
       100.0 * share);
 }
 
-std::optional<double> noise_correlation(const Planes<3>& light, const RawGuides& guides) {
+std::optional<double> noise_correlation(const Planes<3>& light, const RawGuides& guides,
+                                        const LuminanceWeights& weights) {
   double product = 0.0;
   int count = 0;
-  const auto get = [&](int i, int j) { return finite_luminance(light, i, j); };
+  const auto get = [&](int i, int j) { return finite_luminance(light, weights, i, j); };
   for_grid(light[0].extent(), 2, [&](int x, int y) {
     if (!is_smooth(guides, x, y)) return;
     Window<2> window;
@@ -192,8 +195,9 @@ std::optional<double> noise_correlation(const Planes<3>& light, const RawGuides&
   return product / count + 1.0 / 24.0;
 }
 
-std::optional<std::string> check_correlated_noise(const Planes<3>& light, const RawGuides& guides) {
-  const std::optional<double> correlation = noise_correlation(light, guides);
+std::optional<std::string> check_correlated_noise(const Planes<3>& light, const RawGuides& guides,
+                                                  const LuminanceWeights& weights) {
+  const std::optional<double> correlation = noise_correlation(light, guides, weights);
   if (!correlation || *correlation < kCorrelated) return std::nullopt;
   if (*correlation > kSmoothed) {
     return fmt::format(
@@ -209,7 +213,8 @@ std::optional<std::string> check_correlated_noise(const Planes<3>& light, const 
 }
 
 std::optional<std::string> check_noisy_feature(const Planes<3>& feature, const Planes<3>& light,
-                                               std::string_view name) {
+                                               std::string_view name,
+                                               const LuminanceWeights& weights) {
   const Extent extent = light[0].extent();
   EL_CHECK(feature[0].extent() == extent, "{} is {}x{}, the light {}x{}", name, feature[0].width(),
            feature[0].height(), extent.width, extent.height);
@@ -218,7 +223,7 @@ std::optional<std::string> check_noisy_feature(const Planes<3>& feature, const P
     const glm::dvec3 v(feature[0](x, y), feature[1](x, y), feature[2](x, y));
     return glm::length(v) < 1e18 ? glm::length(v) : std::nan("");
   };
-  const auto lit = [&](int x, int y) { return finite_luminance(light, x, y); };
+  const auto lit = [&](int x, int y) { return finite_luminance(light, weights, x, y); };
   std::vector<double> ours = relative_noise(extent, length), theirs = relative_noise(extent, lit);
   if (ours.size() < kFewestSmooth || theirs.size() < kFewestSmooth) return std::nullopt;
   const double noise = median(ours), of_light = median(theirs);

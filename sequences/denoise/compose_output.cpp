@@ -1,5 +1,6 @@
 #include "sequences/denoise/compose_output.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "frame/tiles.h"
@@ -36,7 +37,7 @@ NewChannel fill(int channel, const Place& place, const Extent& canvas, const Val
 // The value of a sum at one pixel.
 float sum_value(const SumChannels& in, const std::vector<const Plane<float>*>& lights, int x,
                 int y) {
-  double before = 0.0, after = 0.0, size = 0.0;
+  double after = 0.0;
   bool has_rest = false;  // a layer of light holds what is beyond the parts
   for (std::size_t i = 0; i < lights.size(); ++i) {
     const LightChannel& light = in.lights[i];
@@ -44,17 +45,12 @@ float sum_value(const SumChannels& in, const std::vector<const Plane<float>*>& l
     after +=
         weight * static_cast<double>(light.written(x, y)) * static_cast<double>((*lights[i])(x, y));
     has_rest |= light.value == nullptr;
-    if (!light.value) continue;
-    const double part = weight * static_cast<double>((*light.value)(x, y));
-    before += part;
-    size += std::abs(part);
   }
-  for (const Plane<float>* plane : in.emission) {
-    const double part = static_cast<double>((*plane)(x, y));
-    before += part, after += part, size += std::abs(part);
-  }
-  const double rest = static_cast<double>((*in.whole)(x, y)) - before;
-  const bool passes = !has_rest && std::isfinite(rest) && std::abs(rest) > kRoundingAbsolute * size;
+  for (const Plane<float>* plane : in.emission) after += static_cast<double>((*plane)(x, y));
+  const SumOfParts before = parts_at(in, x, y);
+  const double rest = static_cast<double>((*in.whole)(x, y)) - before.value;
+  const bool passes =
+      !has_rest && std::isfinite(rest) && std::abs(rest) > kRoundingAbsolute * before.size;
   return static_cast<float>(passes ? after + rest : after);
 }
 
@@ -74,15 +70,17 @@ void compose_view(const RawFrame& frame, const ViewPlan& view, const ExrWindow& 
       const LightChannel in = light_channel(light, frame, static_cast<int>(c));
       const Plane<float>& denoised = (*lights[i])[c];
       outputs[input].push_back(
-          fill(channels[c], place_of(file, channels[c], canvas), extent,
-               [&](int x, int y) { return denoised(x, y) * in.written(x, y); }));
+          fill(channels[c], place_of(file, channels[c], canvas), extent, [&](int x, int y) {
+            const float value = denoised(x, y) * in.written(x, y);
+            return light.is_alpha ? std::clamp(value, 0.0f, 1.0f) : value;
+          }));
     }
   }
   for (const PlannedSum& sum : view.sums) {
     const auto input = static_cast<std::size_t>(sum.layer.input);
     const ExrFile& file = *frame.files[input];
     const std::vector<int> channels = channel_indices(file, "", sum.layer);
-    for (std::size_t c = 0; c < 3; ++c) {
+    for (std::size_t c = 0; c < std::min<std::size_t>(channels.size(), 3); ++c) {
       const SumChannels in = sum_channels(view, sum, frame, static_cast<int>(c));
       std::vector<const Plane<float>*> denoised;
       for (const std::size_t i : sum.lights) denoised.push_back(&(*lights[i])[c]);

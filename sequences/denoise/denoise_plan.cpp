@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "frame/bad_file.h"
 #include "frame/check.h"
 #include "sequences/denoise/denoise_run.h"
 #include "sequences/denoise/sum_check.h"
@@ -14,11 +15,11 @@ namespace {
 // Frames that readings are found on: two steps of motion tell more than one.
 constexpr std::size_t kFirstFrames = 3;
 
-std::vector<FileLayer> layers_of(const FrameFiles& frame) {
+std::vector<FileLayer> layers_of(const FrameHeaders& frame) {
   std::vector<FileLayer> layers;
-  for (std::size_t i = 0; i < frame.inputs.size(); ++i) {
-    const ExrFile file(frame.inputs[i]);
-    const std::vector<FileLayer> found = list_layers(file, static_cast<int>(i));
+  for (std::size_t i = 0; i < frame.size(); ++i) {
+    const std::vector<FileLayer> found =
+        list_layers(frame[i].channels, frame[i].parts, static_cast<int>(i));
     layers.insert(layers.end(), found.begin(), found.end());
   }
   return layers;
@@ -32,6 +33,21 @@ void check_canvas(const ExrWindow& canvas, const std::vector<FrameFiles>& frames
            frames.front().inputs.front().string(), canvas.width, canvas.height, kMaxSide);
 }
 
+LayerPlan find_layers(const FrameHeaders& frame, const LayerChoice& choice) {
+  try {
+    return plan_layers(layers_of(frame), choice);
+  } catch (const BadFile& error) {
+    throw BadFile(fmt::format("{}: {}", frame.front().path.string(), error.what()));
+  }
+}
+
+bool has_alpha(const LayerPlan& plan) {
+  return std::any_of(plan.views.begin(), plan.views.end(), [](const ViewPlan& view) {
+    return std::any_of(view.lights.begin(), view.lights.end(),
+                       [](const PlannedLight& light) { return light.is_alpha; });
+  });
+}
+
 std::vector<int> parse_cuts(const std::string& text) {
   if (text.empty()) return {};
   return parse_frame_range(text);
@@ -43,14 +59,21 @@ DenoisePlan plan_denoising(const DenoiseSettings& settings) {
   DenoisePlan plan;
   plan.frames = find_sequence(settings.files);
   plan.cuts = parse_cuts(settings.cuts);
-  plan.layers = plan_layers(layers_of(plan.frames.front()), settings.layers);
-  plan.canvas = find_canvas(plan.frames, plan.layers);
+  const std::vector<FrameHeaders> headers = read_headers(plan.frames);
+  plan.layers = find_layers(headers.front(), settings.layers);
+  plan.canvas = find_canvas(headers, plan.layers);
+  check_layers(headers, plan.layers);
   check_canvas(plan.canvas, plan.frames);
   std::vector<RawFrame> first;
   for (std::size_t i = 0; i < std::min(kFirstFrames, plan.frames.size()); ++i) {
     first.push_back(read_raw_frame(plan.frames[i], plan.layers, plan.canvas));
   }
   refine_plan(first, plan.layers, plan.notes);
+  if (const std::string line = other_primaries(headers); !line.empty()) plan.notes.push_back(line);
+  if (settings.layers.denoises_alpha && !has_alpha(plan.layers)) {
+    plan.notes.emplace_back(
+        "alpha: none to denoise; the beauty has none, or it is the same everywhere");
+  }
   for (const ViewPlan& view : plan.layers.views) {
     plan.readings.push_back(find_readings(first, view, plan.canvas, settings.guides,
                                           plan.frames.front().inputs.front()));

@@ -43,6 +43,7 @@ std::string describe(const DenoiseSettings& settings, const DenoisePlan& plan) {
   json["map"] = settings.layers.map;
   json["keep"] = settings.layers.keep;
   json["skip"] = settings.layers.skip;
+  json["alpha"] = settings.layers.denoises_alpha;
   json["motion"] = settings.guides.motion;
   json["camera"] = settings.guides.camera;
   json["cuts"] = plan.cuts;
@@ -52,7 +53,9 @@ std::string describe(const DenoiseSettings& settings, const DenoisePlan& plan) {
 }
 
 fs::path checkpoint_path(const DenoisePlan& plan) {
-  return plan.frames.front().outputs.front().parent_path() / ".eigenlight-state";
+  // Other shots, and other parts of this one, may go to the same folder at the same time.
+  const fs::path& first = plan.frames.front().outputs.front();
+  return first.parent_path() / fmt::format(".{}.eigenlight-state", first.filename().string());
 }
 
 class Run {
@@ -134,7 +137,7 @@ void Run::write_frame(const FinishedFrame& frame) {
     if (!folder.empty()) make_directory(folder);
     const ExrRewriteReport report =
         rewrite_exr(*frame.raw->files[i], paths.outputs[i], replacements);
-    totals_.clamped += report.clamped;
+    totals_.clamped += report.values.clamped;
     add_notes(report.recompressed);
     add_notes(report.levels);
   }

@@ -54,9 +54,10 @@ struct DenoiseCallbacks {
 };
 
 /// Denoises all frames of a plan. Stops after the frame at hand when interrupted; files are
-/// complete or absent at any time. A checkpoint beside the outputs, `.eigenlight-state`, is brought
-/// up to date every ten seconds and removed at the end. Throws what reading and writing throw, and
-/// CheckpointError if `resume` finds a checkpoint of another run.
+/// complete or absent at any time. A checkpoint beside the outputs, `.FIRST.eigenlight-state`
+/// (FIRST: name of the first output), is brought up to date every ten seconds and removed at the
+/// end. Throws what reading and writing throw, and CheckpointError if `resume` finds a checkpoint
+/// of another run.
 [[nodiscard]] DenoiseTotals run_denoising(const DenoiseSettings& settings, const DenoisePlan& plan,
                                           const DenoiseCallbacks& callbacks);
 

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <stdexcept>
 
+#include "frame/bad_file.h"
 #include "sequences/conventions/camera_solve.h"
-#include "sequences/conventions/checks.h"
-#include "sequences/conventions/motion.h"
+#include "sequences/denoise/light_checks.h"
 
 namespace eigenlight {
 namespace {
@@ -27,32 +29,6 @@ void view_layer(const RawFrame& frame, const std::optional<FileLayer>& layer, Pl
   if (!layer) return;
   const LayerPlanes& found = frame.at(*layer);
   for (std::size_t c = 0; c < 3; ++c) planes[c] = view_of(found[c]);
-}
-
-// Attributes of Arnold, pbrt and our own files, then V-Ray's.
-std::optional<Camera> camera_of_header(const ExrFile& file) {
-  const ExrWindow& window = file.display_window();
-  const Extent display{window.width, window.height};
-  const auto matrix = [&](const char* name) -> std::optional<ExrMatrix> {
-    const auto value = file.attribute(name);
-    if (!value || !std::holds_alternative<ExrMatrix>(*value)) return std::nullopt;
-    return std::get<ExrMatrix>(*value);
-  };
-  const auto to_camera = matrix("worldToCamera"), to_ndc = matrix("worldToNDC");
-  if (to_camera && to_ndc) return camera_from_matrices(*to_camera, *to_ndc, display);
-  const auto transform = matrix("cameraTransform");
-  const auto fov = file.attribute("cameraFov");
-  if (transform && fov && std::holds_alternative<float>(*fov)) {
-    return camera_from_vray(*transform, std::get<float>(*fov), display);
-  }
-  return std::nullopt;
-}
-
-// From pixels of the display window to those of the canvas.
-Camera on_canvas(Camera camera, const ExrWindow& display, const ExrWindow& canvas) {
-  camera.center.x += static_cast<float>(display.x - canvas.x);
-  camera.center.y += static_cast<float>(display.y - canvas.y);
-  return camera;
 }
 
 // NAME.camera.json beside NAME.####.exr.
@@ -78,7 +54,7 @@ class Finder {
     }
     find_surfaces();
     find_vectors();
-    check_light();
+    for (const std::string& line : check_lights(frames_, view_, guides_, readings_)) warn(line);
     return std::move(readings_);
   }
 
@@ -86,10 +62,10 @@ class Finder {
   void say(std::string text) { readings_.words.push_back(std::move(text)); }
   void warn(std::string text) { readings_.warnings.push_back(std::move(text)); }
   void find_cameras();
+  [[nodiscard]] bool is_in_view_space() const;
   void find_surfaces();
   void find_vectors();
   void try_vectors();
-  void check_light();
 
   std::span<const RawFrame> frames_;
   const ViewPlan& view_;
@@ -104,6 +80,9 @@ void Finder::find_cameras() {
   std::error_code error;
   const fs::path beside = camera_file_beside(input_);
   const fs::path path = choice_.camera.empty() ? beside : fs::path(choice_.camera);
+  if (!fs::exists(path, error) && !choice_.camera.empty()) {
+    throw BadFile(fmt::format("--camera {}: no such file", choice_.camera));
+  }
   if (!choice_.camera.empty() || fs::exists(path, error)) {
     readings_.camera_file.emplace(path);
     readings_.camera_from = CameraFrom::kFile;
@@ -117,6 +96,13 @@ void Finder::find_cameras() {
     const RawGuides guides = raw_guides(frames_.front(), view_);
     if (const auto fit = solve_camera(guides.position, guides.depth)) {
       readings_.camera_from = CameraFrom::kPosition;
+      readings_.in_view_space = is_in_view_space();
+      if (readings_.in_view_space) {
+        return say(fmt::format(
+            "camera: its lens solved from {}, whose positions are in the space of the camera: how "
+            "the camera moves is not known",
+            name_for_people(*view_.position)));
+      }
       return say(fmt::format("camera: solved from {}, residual {:.3f} pixels",
                              name_for_people(*view_.position), fit->residual));
     }
@@ -124,6 +110,15 @@ void Finder::find_cameras() {
         fmt::format("camera: none ({} fits no pinhole camera)", name_for_people(*view_.position)));
   }
   say("camera: none");
+}
+
+// A camera that stands at the origin of the world has such positions too: in one frame, not in all.
+bool Finder::is_in_view_space() const {
+  return std::all_of(frames_.begin(), frames_.end(), [&](const RawFrame& frame) {
+    const RawGuides guides = raw_guides(frame, view_);
+    const auto fit = solve_camera(guides.position, guides.depth);
+    return fit && fit->in_view_space;
+  });
 }
 
 void Finder::find_surfaces() {
@@ -159,7 +154,7 @@ void Finder::find_vectors() {
     return say("motion: as --motion says, " + choice_.motion);
   }
   if (view_.motion && guides_.size() >= 2) return try_vectors();
-  if (readings_.camera_from != CameraFrom::kNowhere) {
+  if (readings_.knows_poses()) {
     return say("motion: from cameras; moving objects have no history");
   }
   if (frames_.size() >= 2) {
@@ -171,6 +166,16 @@ void Finder::find_vectors() {
 
 void Finder::try_vectors() {
   const MotionFit fit = find_motion(guides_);
+  // A scale that fits would only tell that most of the picture moves alike.
+  const bool is_in_pixels =
+      fit.is_clear && std::abs(fit.best.scale_x) == 1.0 && std::abs(fit.best.scale_y) == 1.0;
+  if (!is_in_pixels && are_encoded(guides_)) {
+    return warn(fmt::format(
+        "motion: {} looks encoded as colors, 0 to 1 with 0.5 where nothing moves; it is not used. "
+        "Write raw vectors (Arnold: Encode Raw Vector on){}",
+        name_for_people(*view_.motion),
+        readings_.knows_poses() ? "" : "; each frame is denoised without history"));
+  }
   say(fit.words);
   if (fit.is_clear) {
     readings_.motion = fit.best;
@@ -188,39 +193,8 @@ void Finder::try_vectors() {
   if (readings_.is_still) return say("motion: nothing moves in the first frames");
   warn(fmt::format("motion: no reading of {} is clearly best; {}; say which with --motion",
                    name_for_people(*view_.motion),
-                   readings_.camera_from != CameraFrom::kNowhere
-                       ? "only the camera's motion is known"
-                       : "each frame is denoised without history"));
-}
-
-void Finder::check_light() {
-  if (view_.is_denoised_already) {
-    warn(
-        "beauty: the renderer has denoised it already (there is a Noisy Image); layers of light "
-        "are used, not it");
-  }
-  Planes<2> motion;
-  if (readings_.motion && guides_.size() >= 2) {
-    apply_motion(guides_[1], &guides_[0], *readings_.motion, motion);
-  }
-  for (const PlannedLight& light : view_.lights) {
-    if (!light.layer) continue;
-    Planes<3> now;
-    view_layer(frames_.front(), light.layer, now);
-    if (const auto line = check_correlated_noise(now, guides_.front())) {
-      warn(fmt::format("{}: {}", light.layer->name.empty() ? "color" : light.layer->name, *line));
-    }
-    if (frames_.size() < 2) continue;
-    Planes<3> next;
-    view_layer(frames_[1], light.layer, next);
-    if (const auto line = check_frozen_seeds(now, next, motion)) {
-      warn(fmt::format("{}: {}", name_for_people(*light.layer), *line));
-    }
-  }
-  if (!view_.albedo || view_.lights.empty() || !view_.lights.front().layer) return;
-  Planes<3> light;
-  view_layer(frames_.front(), view_.lights.front().layer, light);
-  if (const auto line = check_noisy_feature(guides_.front().albedo, light, "albedo")) warn(*line);
+                   readings_.knows_poses() ? "only the camera's motion is known"
+                                           : "each frame is denoised without history"));
 }
 
 }  // namespace
@@ -238,31 +212,6 @@ RawGuides raw_guides(const RawFrame& frame, const ViewPlan& view) {
     }
   }
   return guides;
-}
-
-std::optional<Camera> find_camera(const RawFrame& frame, const ViewPlan& view,
-                                  const Readings& readings, const ExrWindow& canvas) {
-  const ExrFile& file = *frame.files.front();
-  const ExrWindow& display = file.display_window();
-  std::optional<Camera> camera;
-  switch (readings.camera_from) {
-    case CameraFrom::kNowhere:
-      return std::nullopt;
-    case CameraFrom::kFile:
-      camera = readings.camera_file->camera(frame.frame, {display.width, display.height});
-      break;
-    case CameraFrom::kHeader:
-      camera = camera_of_header(file);
-      break;
-    case CameraFrom::kPosition: {
-      const RawGuides guides = raw_guides(frame, view);
-      const auto fit = solve_camera(guides.position, guides.depth);
-      if (!fit) return std::nullopt;
-      return fit->camera;
-    }
-  }
-  if (!camera) return std::nullopt;
-  return on_canvas(*camera, display, canvas);
 }
 
 Readings find_readings(std::span<const RawFrame> frames, const ViewPlan& view,

@@ -31,15 +31,25 @@ struct Readings {
   /// Without vectors and cameras: nothing moves, as far as the guides show.
   bool is_still = false;
   CameraFrom camera_from = CameraFrom::kNowhere;
+  /// Positions are in the space of the camera: its lens is known, where it stands is not.
+  bool in_view_space = false;
   std::optional<CameraFile> camera_file;
   std::vector<std::string> words;     ///< what was found, for people
   std::vector<std::string> warnings;  ///< what it costs, and what to do
+
+  /// Whether cameras tell how pixels move from frame to frame.
+  [[nodiscard]] bool knows_poses() const {
+    return camera_from != CameraFrom::kNowhere && !in_view_space;
+  }
 };
 
 /// Guides of a view as views of the planes of `frame`, which must outlive them.
 [[nodiscard]] RawGuides raw_guides(const RawFrame& frame, const ViewPlan& view);
 
-/// The camera of a frame in pixels of the canvas. `display`: of the file.
+/// The camera that the attributes of a file describe, in pixels of its display window.
+[[nodiscard]] std::optional<Camera> camera_of_header(const ExrFile& file);
+
+/// The camera of a frame in pixels of the canvas.
 [[nodiscard]] std::optional<Camera> find_camera(const RawFrame& frame, const ViewPlan& view,
                                                 const Readings& readings, const ExrWindow& canvas);
 

@@ -62,12 +62,8 @@ void build_rest(const RawFrame& raw, const ViewPlan& view, Planes<3>& radiance) 
     const SumChannels in = sum_channels(view, *beauty, raw, c);
     parallel_for(in.whole->height(), [&](int y) {
       for (int x = 0; x < in.whole->width(); ++x) {
-        float rest = (*in.whole)(x, y);
-        for (std::size_t i = 0; i < in.lights.size(); ++i) {
-          if (in.lights[i].value) rest -= (*in.lights[i].value)(x, y) * in.weight(i, x, y);
-        }
-        for (const Plane<float>* plane : in.emission) rest -= (*plane)(x, y);
-        radiance[c](x, y) = rest;
+        const double whole = static_cast<double>((*in.whole)(x, y));
+        radiance[c](x, y) = static_cast<float>(whole - parts_at(in, x, y).value);
       }
     });
   }
@@ -135,8 +131,7 @@ void FrameBuilder::build_lights(const RawFrame& raw, Frame& out) {
   for (std::size_t i = 0; i < view_.lights.size(); ++i) {
     Planes<3>& radiance = out.lights[i].radiance;
     ensure_extent(radiance, {canvas_.width, canvas_.height});
-    const std::string& what = view_.lights[i].what;
-    out.lights[i].is_direct = what.ends_with(" direct") || what == "beauty";
+    out.lights[i].is_direct = view_.lights[i].is_direct;
     if (!view_.lights[i].layer) {
       build_rest(raw, view_, radiance);
     } else {
@@ -175,7 +170,7 @@ void FrameBuilder::place_background(const RawFrame& raw, Frame& out) const {
 }
 
 void FrameBuilder::build_motion(const RawGuides& guides, Frame& out) {
-  const bool has_cameras = camera_now_ && camera_before_;
+  const bool has_cameras = camera_now_ && camera_before_ && readings_.knows_poses();
   const bool is_known = readings_.motion || has_cameras || readings_.is_still;
   out.previous_index = -1;
   if (!has_history(guides.frame) || !is_known) return;

@@ -124,8 +124,8 @@ std::string name_for_people(const FileLayer& layer) {
   return layer.view.empty() ? name : layer.view + ": " + name;
 }
 
-std::vector<FileLayer> list_layers(const ExrFile& file, int input) {
-  const std::vector<ExrChannelInfo>& channels = file.channels();
+std::vector<FileLayer> list_layers(const std::vector<ExrChannelInfo>& channels,
+                                   const std::vector<ExrPart>& parts, int input) {
   std::vector<Named> names;
   for (std::size_t i = 0; i < channels.size(); ++i) {
     names.push_back(split(channels, channels[i]));
@@ -145,7 +145,8 @@ std::vector<FileLayer> list_layers(const ExrFile& file, int input) {
       found = layers.end() - 1;
       members.emplace_back();
     }
-    found->is_deep |= file.parts()[static_cast<std::size_t>(channel.part)].is_deep;
+    found->is_deep |= parts[static_cast<std::size_t>(channel.part)].is_deep;
+    if (channel.type == ExrType::kUint) found->type = ExrType::kUint;
     found->is_subsampled |= channel.x_sampling != 1 || channel.y_sampling != 1;
     members[static_cast<std::size_t>(found - layers.begin())].emplace(place.order,
                                                                       channel.full_name);

@@ -18,7 +18,7 @@ struct FileLayer {
   std::string view;               ///< of a stereo file, or empty
   int input = 0;                  ///< which input of the command
   int part = 0;                   ///< of the first channel
-  ExrType type = ExrType::kHalf;  ///< of the first channel
+  ExrType type = ExrType::kHalf;  ///< of the first channel; kUint if any holds integers
   bool is_deep = false, is_subsampled = false;
   /// Full channel names, in the order R G B A, X Y Z W or u v; one name for a layer of one channel.
   std::vector<std::string> channels;
@@ -32,6 +32,10 @@ struct FileLayer {
 /// The layers of a file in the order of their first channels. Channels of one layer may lie in
 /// several parts. `R`, `r` and `red` are one, as are G, B, A, X, Y, Z, W and U, V. In a layer with
 /// R, G, B a channel Z, or one of any other name, is a layer of its own.
-[[nodiscard]] std::vector<FileLayer> list_layers(const ExrFile& file, int input);
+[[nodiscard]] std::vector<FileLayer> list_layers(const std::vector<ExrChannelInfo>& channels,
+                                                 const std::vector<ExrPart>& parts, int input);
+[[nodiscard]] inline std::vector<FileLayer> list_layers(const ExrFile& file, int input) {
+  return list_layers(file.channels(), file.parts(), input);
+}
 
 }  // namespace eigenlight

@@ -15,12 +15,18 @@ std::regex parse_regex(std::string_view option, const std::string& text) {
   }
 }
 
-std::string why_no_light(const FileLayer& layer) {
-  if (layer.is_deep) return "deep data; only flat pixels can be denoised";
-  if (layer.is_subsampled) return "subsampled channels; only full resolution can be denoised";
-  if (layer.type == ExrType::kUint) return "integers";
-  if (layer.size() < 3) return fmt::format("{} channels, expected 3", layer.size());
+std::string why_unusable(const FileLayer& layer, std::size_t channels) {
+  if (layer.is_deep) return "deep data, expected flat pixels";
+  if (layer.is_subsampled) return "subsampled channels, expected full resolution";
+  if (layer.type == ExrType::kUint) return "integers, expected half or float";
+  if (layer.size() < channels) {
+    return fmt::format("{} channels, expected {}", layer.size(), channels);
+  }
   return {};
+}
+
+std::string why_no_light(const FileLayer& layer) {
+  return why_unusable(layer, layer.size() == 1 ? 1 : 3);
 }
 
 std::vector<MappedLayer> parse_map(const std::vector<std::string>& entries) {

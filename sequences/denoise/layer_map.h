@@ -28,8 +28,10 @@ struct MappedLayer {
 /// A regular expression without regard to case. Throws std::invalid_argument naming the option.
 [[nodiscard]] std::regex parse_regex(std::string_view option, const std::string& text);
 
-/// Why a layer cannot be denoised: deep, subsampled, of integers, too few channels. Empty if it
-/// can.
+/// Why a layer cannot be used: deep, subsampled, of integers, or less than `channels` channels.
+/// Empty if it can.
+[[nodiscard]] std::string why_unusable(const FileLayer& layer, std::size_t channels);
+/// Why a layer cannot be denoised. Light has 3 channels, or is gray: one.
 [[nodiscard]] std::string why_no_light(const FileLayer& layer);
 
 }  // namespace eigenlight

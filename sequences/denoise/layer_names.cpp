@@ -28,35 +28,36 @@ constexpr std::array<NamedRole, 13> kRoles{{{Role::kBeauty, "beauty"},
                                             {Role::kNoisy, "noisy"},
                                             {Role::kOther, "other"}}};
 
-// Cycles divides by the color; all others write light as it is seen.
+// Cycles divides by the color; all others write light as it is seen. `true` behind the sum: direct
+// light.
 constexpr std::array kLights{
     // Cycles
-    LightName{"diffdir", "diffuse direct", "diffcol", true, ""},
+    LightName{"diffdir", "diffuse direct", "diffcol", true, "", true},
     LightName{"diffind", "diffuse indirect", "diffcol", true, ""},
-    LightName{"glossdir", "glossy direct", "glosscol", true, ""},
+    LightName{"glossdir", "glossy direct", "glosscol", true, "", true},
     LightName{"glossind", "glossy indirect", "glosscol", true, ""},
-    LightName{"transdir", "transmission direct", "transcol", true, ""},
+    LightName{"transdir", "transmission direct", "transcol", true, "", true},
     LightName{"transind", "transmission indirect", "transcol", true, ""},
-    LightName{"subsurfacedir", "subsurface direct", "subsurfacecol", true, ""},
+    LightName{"subsurfacedir", "subsurface direct", "subsurfacecol", true, "", true},
     LightName{"subsurfaceind", "subsurface indirect", "subsurfacecol", true, ""},
-    LightName{"volumedir", "volume direct", "", true, ""},
+    LightName{"volumedir", "volume direct", "", true, "", true},
     LightName{"volumeind", "volume indirect", "", true, ""},
     // Arnold
-    LightName{"diffusedirect", "diffuse direct", "diffusealbedo", false, "diffuse"},
+    LightName{"diffusedirect", "diffuse direct", "diffusealbedo", false, "diffuse", true},
     LightName{"diffuseindirect", "diffuse indirect", "diffusealbedo", false, "diffuse"},
-    LightName{"speculardirect", "specular direct", "specularalbedo", false, "specular"},
+    LightName{"speculardirect", "specular direct", "specularalbedo", false, "specular", true},
     LightName{"specularindirect", "specular indirect", "specularalbedo", false, "specular"},
-    LightName{"coatdirect", "coat direct", "coatalbedo", false, "coat"},
+    LightName{"coatdirect", "coat direct", "coatalbedo", false, "coat", true},
     LightName{"coatindirect", "coat indirect", "coatalbedo", false, "coat"},
-    LightName{"sheendirect", "sheen direct", "sheenalbedo", false, "sheen"},
+    LightName{"sheendirect", "sheen direct", "sheenalbedo", false, "sheen", true},
     LightName{"sheenindirect", "sheen indirect", "sheenalbedo", false, "sheen"},
     LightName{"transmissiondirect", "transmission direct", "transmissionalbedo", false,
-              "transmission"},
+              "transmission", true},
     LightName{"transmissionindirect", "transmission indirect", "transmissionalbedo", false,
               "transmission"},
-    LightName{"sssdirect", "subsurface direct", "sssalbedo", false, "sss"},
+    LightName{"sssdirect", "subsurface direct", "sssalbedo", false, "sss", true},
     LightName{"sssindirect", "subsurface indirect", "sssalbedo", false, "sss"},
-    LightName{"volumedirect", "volume direct", "", false, "volume"},
+    LightName{"volumedirect", "volume direct", "", false, "volume", true},
     LightName{"volumeindirect", "volume indirect", "", false, "volume"},
     LightName{"diffuse", "diffuse", "diffusealbedo", false, ""},
     LightName{"specular", "specular", "specularalbedo", false, ""},
@@ -66,14 +67,14 @@ constexpr std::array kLights{
     LightName{"sss", "subsurface", "sssalbedo", false, ""},
     LightName{"volume", "volume", "", false, ""},
     // RenderMan
-    LightName{"directdiffuse", "diffuse direct", "albedo", false, "diffuse"},
+    LightName{"directdiffuse", "diffuse direct", "albedo", false, "diffuse", true},
     LightName{"indirectdiffuse", "diffuse indirect", "albedo", false, "diffuse"},
-    LightName{"directspecular", "specular direct", "", false, "specular"},
+    LightName{"directspecular", "specular direct", "", false, "specular", true},
     LightName{"indirectspecular", "specular indirect", "", false, "specular"},
     LightName{"subsurface", "subsurface", "albedo", false, ""},
     LightName{"transmissive", "transmission", "", false, ""},
     // V-Ray
-    LightName{"lighting", "diffuse direct", "diffuse", false, ""},
+    LightName{"lighting", "diffuse direct", "diffuse", false, "", true},
     LightName{"gi", "diffuse indirect", "diffuse", false, ""},
     LightName{"globalillumination", "diffuse indirect", "diffuse", false, ""},
     LightName{"reflect", "reflection", "", false, ""},
@@ -81,12 +82,12 @@ constexpr std::array kLights{
     LightName{"reflection", "reflection", "", false, ""},
     LightName{"refraction", "refraction", "", false, ""},
     // Redshift
-    LightName{"diffuselighting", "diffuse direct", "diffusefilter", false, ""},
-    LightName{"specularlighting", "specular direct", "", false, ""},
+    LightName{"diffuselighting", "diffuse direct", "diffusefilter", false, "", true},
+    LightName{"specularlighting", "specular direct", "", false, "", true},
     LightName{"reflections", "reflection", "", false, ""},
     LightName{"refractions", "refraction", "", false, ""},
     // this project
-    LightName{"direct", "diffuse direct", "albedo", false, ""},
+    LightName{"direct", "diffuse direct", "albedo", false, "", true},
     LightName{"indirect", "diffuse indirect", "albedo", false, ""},
 };
 
@@ -116,7 +117,7 @@ const LightName* find_light(std::string_view word) {
 const std::vector<std::string_view>& words_of(Role role) {
   using Words = std::vector<std::string_view>;
   static const std::map<Role, Words> all{
-      {Role::kBeauty, {"", "combined", "rgba", "rgb", "rgbamain", "beauty", "ci", "color"}},
+      {Role::kBeauty, {"", "combined", "rgba", "rgb", "rgbamain", "beauty", "ci", "color", "y"}},
       {Role::kEmission, {"emit", "emission", "env", "background", "selfillum", "environment"}},
       {Role::kAlbedo,
        {"albedo", "diffusealbedo", "diffcol", "denoisingalbedo", "diffusefilter", "denoisealbedo",

@@ -32,6 +32,7 @@ struct LightName {
   std::string_view color;  ///< word of the layer it is multiplied by, or of its albedo; or empty
   bool is_divided;         ///< the file has it without that color
   std::string_view sum;    ///< word of a layer that is the sum of this one and others, or empty
+  bool is_direct = false;  ///< its edges, those of shadows, are in no guide
 };
 
 /// The last word of a layer's name, in lower case and without blanks, `_` and `-`:

@@ -17,6 +17,7 @@ struct LayerChoice {
       {};  ///< regular expression: light layers of such names are copied, not denoised
   std::string skip =
       {};  ///< regular expression: layers of such names are not looked at, only copied
+  bool denoises_alpha = false;  ///< filter the alpha of beauty like its light; else it is copied
 };
 
 /// A layer of light that is denoised.
@@ -25,6 +26,8 @@ struct PlannedLight {
   std::optional<FileLayer> layer;  ///< where it stands; none: what beauty has beyond all parts
   std::optional<FileLayer> color;  ///< what it is multiplied by, or its albedo; none: 1
   bool is_divided = false;         ///< the file has it without `color`
+  bool is_direct = false;          ///< NoisyLight::is_direct
+  bool is_alpha = false;           ///< the alpha of beauty, in [0, 1]; part of no sum
 };
 
 /// A layer that is the sum of others: beauty, or diffuse of direct and indirect.
@@ -59,8 +62,9 @@ struct LayerPlan {
 /// composed of them; where only a beauty is there, it is one layer of light over its albedo.
 ///
 /// Throws std::invalid_argument if a `--map` names no role or no layer, a regular expression is
-/// wrong, or a layer that is to be denoised is deep, subsampled, of integers or has less than 3
-/// channels; BadFile naming the layers if there is no light at all.
+/// wrong, or a layer that it names is deep, subsampled, of integers or has too few channels;
+/// BadFile naming the layers if there is no light at all. Other layers that cannot be used are
+/// copied.
 [[nodiscard]] LayerPlan plan_layers(const std::vector<FileLayer>& layers,
                                     const LayerChoice& choice);
 

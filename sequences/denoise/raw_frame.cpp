@@ -10,42 +10,6 @@
 namespace eigenlight {
 namespace {
 
-// All layers of floats that a view reads.
-std::vector<const FileLayer*> layers_of(const ViewPlan& view) {
-  std::vector<const FileLayer*> layers;
-  const auto add = [&](const std::optional<FileLayer>& layer) {
-    if (layer) layers.push_back(&*layer);
-  };
-  for (const PlannedLight& light : view.lights) {
-    add(light.layer);
-    add(light.color);
-  }
-  for (const PlannedSum& sum : view.sums) layers.push_back(&sum.layer);
-  for (const FileLayer& emission : view.emission) layers.push_back(&emission);
-  add(view.beauty);
-  add(view.albedo);
-  add(view.normal);
-  add(view.depth);
-  add(view.position);
-  add(view.motion);
-  return layers;
-}
-
-const FileLayer& first_light(const ViewPlan& view) {
-  for (const PlannedLight& light : view.lights) {
-    if (light.layer) return *light.layer;
-  }
-  return *view.beauty;
-}
-
-ExrWindow united(const ExrWindow& a, const ExrWindow& b) {
-  if (a.width == 0) return b;
-  const int x = std::min(a.x, b.x), y = std::min(a.y, b.y);
-  const int x1 = std::max(a.x + a.width, b.x + b.width);
-  const int y1 = std::max(a.y + a.height, b.y + b.height);
-  return {x, y, x1 - x, y1 - y};
-}
-
 // Copies what lies on the canvas.
 template <typename T>
 Plane<T> place(const Plane<T>& from, const ExrWindow& window, const ExrWindow& canvas) {
@@ -68,21 +32,26 @@ const ExrWindow& window_of(const ExrFile& file, int channel) {
 void read_input(const ExrFile& file, const std::string& path, int input,
                 const std::vector<const FileLayer*>& layers, const ExrWindow& canvas,
                 RawFrame& frame) {
-  std::vector<int> wanted;
-  std::vector<std::pair<std::string, std::size_t>> owners;  // key, number of channels
+  std::vector<int> wanted;                                       // each channel once
+  std::vector<std::pair<std::string, std::vector<int>>> owners;  // key, channels
   for (const FileLayer* layer : layers) {
     if (layer->input != input || frame.planes.count(key_of(*layer)) > 0) continue;
     const std::vector<int> found = channel_indices(file, path, *layer);
-    wanted.insert(wanted.end(), found.begin(), found.end());
-    owners.emplace_back(key_of(*layer), found.size());
+    for (const int channel : found) {
+      if (std::find(wanted.begin(), wanted.end(), channel) == wanted.end()) {
+        wanted.push_back(channel);
+      }
+    }
+    owners.emplace_back(key_of(*layer), found);
     frame.planes.emplace(key_of(*layer), LayerPlanes());
   }
   if (wanted.empty()) return;
   const std::vector<Plane<float>> planes = file.read(wanted);
-  std::size_t next = 0;
-  for (const auto& [key, count] : owners) {
-    for (std::size_t c = 0; c < count; ++c, ++next) {
-      frame.planes[key].push_back(place(planes[next], window_of(file, wanted[next]), canvas));
+  for (const auto& [key, channels] : owners) {
+    for (const int channel : channels) {
+      const auto place_of = std::find(wanted.begin(), wanted.end(), channel) - wanted.begin();
+      frame.planes[key].push_back(
+          place(planes[static_cast<std::size_t>(place_of)], window_of(file, channel), canvas));
     }
   }
 }
@@ -125,31 +94,7 @@ const LayerPlanes& RawFrame::at(const FileLayer& layer) const {
 
 std::vector<int> channel_indices(const ExrFile& file, const std::string& path,
                                  const FileLayer& layer) {
-  std::vector<int> indices;
-  for (const std::string& name : layer.channels) {
-    const auto& channels = file.channels();
-    const auto found = std::find_if(channels.begin(), channels.end(), [&](const auto& channel) {
-      return channel.full_name == name && channel.view == layer.view;
-    });
-    if (found == channels.end()) {
-      throw BadFile(fmt::format("{}: no channel '{}', which the first frame has", path, name));
-    }
-    indices.push_back(static_cast<int>(found - channels.begin()));
-  }
-  return indices;
-}
-
-ExrWindow find_canvas(const std::vector<FrameFiles>& frames, const LayerPlan& plan) {
-  ExrWindow canvas{0, 0, 0, 0};
-  for (const FrameFiles& frame : frames) {
-    for (const ViewPlan& view : plan.views) {
-      const FileLayer& light = first_light(view);
-      const auto& path = frame.inputs[static_cast<std::size_t>(light.input)];
-      const ExrFile file(path);
-      canvas = united(canvas, window_of(file, channel_indices(file, path.string(), light).front()));
-    }
-  }
-  return canvas;
+  return channel_indices(file.channels(), path, layer);
 }
 
 RawFrame read_raw_frame(const FrameFiles& paths, const LayerPlan& plan, const ExrWindow& canvas) {
@@ -161,7 +106,7 @@ RawFrame read_raw_frame(const FrameFiles& paths, const LayerPlan& plan, const Ex
     names.push_back(path.string());
   }
   for (const ViewPlan& view : plan.views) {
-    const std::vector<const FileLayer*> layers = layers_of(view);
+    const std::vector<const FileLayer*> layers = layers_read(view);
     for (std::size_t input = 0; input < names.size(); ++input) {
       read_input(*frame.files[input], names[input], static_cast<int>(input), layers, canvas, frame);
     }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "frame/plane.h"
+#include "sequences/denoise/file_headers.h"
 #include "sequences/denoise/layer_plan.h"
 #include "sequences/denoise/sequence_files.h"
 #include "sequences/exr/exr_file.h"
@@ -36,10 +37,6 @@ class RawFrame {
 
 /// A name that no other layer of the inputs has.
 [[nodiscard]] std::string key_of(const FileLayer& layer);
-
-/// The smallest window that holds all pixels of light of all frames, in display coordinates. Reads
-/// the headers of all files. Throws BadFile naming the first file that lacks a layer of the plan.
-[[nodiscard]] ExrWindow find_canvas(const std::vector<FrameFiles>& frames, const LayerPlan& plan);
 
 /// Reads the layers of `plan` and places them on the canvas. Throws BadFile naming file and layer
 /// if a layer is missing or has fewer channels than in the first frame; std::runtime_error if a

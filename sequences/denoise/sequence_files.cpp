@@ -25,11 +25,21 @@ std::vector<int> existing_frames(const SequenceName& input) {
     // Sequences at a regular step are one shot; a hole is most often a lost file.
     const int step = frames[1] - frames[0];
     if (frames[i] - frames[i - 1] == step) continue;
-    throw BadFile(fmt::format("{}: frame {} is missing; name the frames with --frames {}",
-                              input.path(frames[i - 1] + 1).string(), frames[i - 1] + 1,
-                              format_frame_range(frames)));
+    throw std::runtime_error(fmt::format(
+        "{}: frame {} is missing; name the frames with --frames {}",
+        input.path(frames[i - 1] + 1).string(), frames[i - 1] + 1, format_frame_range(frames)));
   }
   return frames;
+}
+
+// A frame of a sequence may come later, unless nothing of that name can: then the name is wrong.
+[[noreturn]] void fail_missing(const SequenceName& input, int frame) {
+  const fs::path path = input.path(frame);
+  const std::string line = fmt::format("{}: no such file", path.string());
+  std::error_code error;
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  if (input.is_single() || !fs::is_directory(folder, error)) throw BadFile(line);
+  throw std::runtime_error(line);
 }
 
 bool is_exr(const std::string& name) {
@@ -74,6 +84,11 @@ std::vector<FrameFiles> find_sequence(const FileChoice& choice) {
     throw std::invalid_argument(
         fmt::format("-o {}: expected a folder, for there are several inputs", choice.output));
   }
+  std::error_code ignored;
+  if (!to_file && fs::exists(choice.output, ignored) && !fs::is_directory(choice.output, ignored)) {
+    throw std::invalid_argument(fmt::format(
+        "-o {}: is a file, expected a folder or a name that ends in .exr", choice.output));
+  }
   std::optional<SequenceName> output;
   if (to_file) output.emplace(choice.output);
   const std::vector<int> frames =
@@ -85,7 +100,7 @@ std::vector<FrameFiles> find_sequence(const FileChoice& choice) {
     for (const SequenceName& input : inputs) {
       const fs::path in = input.path(frame);
       std::error_code error;
-      if (!fs::exists(in, error)) throw BadFile(fmt::format("{}: no such file", in.string()));
+      if (!fs::exists(in, error)) fail_missing(input, frame);
       paths.inputs.push_back(in);
       paths.outputs.push_back(output ? output->path(frame)
                                      : fs::path(choice.output) / in.filename());

@@ -26,8 +26,10 @@ struct FrameFiles {
 /// of the inputs, unless it ends with `.exr`.
 ///
 /// Throws std::invalid_argument if a pattern has no place for the frame number, an output is an
-/// input and `overwrite` is false, two frames have one output, or several inputs have an output
-/// that is no folder; BadFile naming the first file that is missing.
+/// input and `overwrite` is false, two frames have one output, an output is neither a folder nor a
+/// name of an EXR file, or several inputs have an output that is no folder; BadFile if no file has
+/// such a name; std::runtime_error naming the first frame that is missing from a sequence, which
+/// may still be rendered.
 [[nodiscard]] std::vector<FrameFiles> find_sequence(const FileChoice& choice);
 
 }  // namespace eigenlight

@@ -12,13 +12,17 @@
 namespace eigenlight {
 namespace {
 
-bool is_zero(const LayerPlanes& planes) {
-  return std::all_of(planes.begin(), planes.end(), [](const Plane<float>& plane) {
+bool is_constant(const std::vector<RawFrame>& frames, const FileLayer& layer, float value) {
+  const auto holds = [value](const Plane<float>& plane) {
     for (int y = 0; y < plane.height(); ++y) {
       const float* row = plane.row(y);
-      if (std::any_of(row, row + plane.width(), [](float v) { return v != 0.0f; })) return false;
+      if (std::any_of(row, row + plane.width(), [=](float v) { return v != value; })) return false;
     }
     return true;
+  };
+  return std::all_of(frames.begin(), frames.end(), [&](const RawFrame& frame) {
+    const LayerPlanes& planes = frame.at(layer);
+    return std::all_of(planes.begin(), planes.end(), holds);
   });
 }
 
@@ -35,12 +39,11 @@ void drop_absent(const std::vector<RawFrame>& frames, ViewPlan& view, LayerPlan&
   std::vector<PlannedLight> kept;
   for (std::size_t i = 0; i < view.lights.size(); ++i) {
     const FileLayer& layer = *view.lights[i].layer;
-    const bool is_absent = std::all_of(frames.begin(), frames.end(), [&](const RawFrame& frame) {
-      return is_zero(frame.at(layer));
-    });
+    const bool is_one = view.lights[i].is_alpha && is_constant(frames, layer, 1.0f);
+    const bool is_absent = is_one || is_constant(frames, layer, 0.0f);
     place[i] = is_absent ? view.lights.size() : kept.size();
     if (is_absent) {
-      set_row(plan, layer, "copied", "constant 0");
+      set_row(plan, layer, "copied", is_one ? "constant 1" : "constant 0");
     } else {
       kept.push_back(view.lights[i]);
     }
@@ -64,7 +67,7 @@ void denoise_whole(ViewPlan& view, LayerPlan& plan) {
   }
   view.sums.clear();
   view.emission.clear();
-  view.lights.push_back({"beauty", view.beauty, view.albedo, false});
+  view.lights.push_back({"beauty", view.beauty, view.albedo, false, true});
   set_row(plan, *view.beauty, "denoised", "all layers of light are 0: as one layer");
 }
 
@@ -76,7 +79,7 @@ void separate(ViewPlan& view, std::size_t sum, const std::string& why, LayerPlan
     set_row(plan, layer, "copied", why + "; no layer of light is left for it");
     return;
   }
-  view.lights.push_back({"beauty", layer, view.albedo, false});
+  view.lights.push_back({"beauty", layer, view.albedo, false, true});
   set_row(plan, layer, "denoised", why);
 }
 
@@ -135,19 +138,24 @@ SumChannels sum_channels(const ViewPlan& view, const PlannedSum& sum, const RawF
   return found;
 }
 
+SumOfParts parts_at(const SumChannels& in, int x, int y) {
+  SumOfParts sum;
+  const auto add = [&](double part) { sum.value += part, sum.size += std::abs(part); };
+  for (std::size_t i = 0; i < in.lights.size(); ++i) {
+    const Plane<float>* value = in.lights[i].value;
+    if (value) add(static_cast<double>((*value)(x, y)) * static_cast<double>(in.weight(i, x, y)));
+  }
+  for (const Plane<float>* plane : in.emission) add(static_cast<double>((*plane)(x, y)));
+  return sum;
+}
+
 SumCheck check_sum(const ViewPlan& view, const PlannedSum& sum, const RawFrame& frame) {
   std::array<double, 3> total{};  // of (sum - parts), of its absolute, of |sum|
   for (int c = 0; c < 3; ++c) {
     const SumChannels in = sum_channels(view, sum, frame, c);
     for (int y = 0; y < in.whole->height(); ++y) {
       for (int x = 0; x < in.whole->width(); ++x) {
-        double parts = 0.0;
-        for (std::size_t i = 0; i < in.lights.size(); ++i) {
-          if (!in.lights[i].value) continue;
-          parts += static_cast<double>((*in.lights[i].value)(x, y)) *
-                   static_cast<double>(in.weight(i, x, y));
-        }
-        for (const Plane<float>* plane : in.emission) parts += static_cast<double>((*plane)(x, y));
+        const double parts = parts_at(in, x, y).value;
         const double value = static_cast<double>((*in.whole)(x, y));
         if (!std::isfinite(parts) || !std::isfinite(value)) continue;
         total[0] += value - parts;
@@ -164,7 +172,9 @@ void refine_plan(const std::vector<RawFrame>& frames, LayerPlan& plan,
                  std::vector<std::string>& notes) {
   for (ViewPlan& view : plan.views) {
     drop_absent(frames, view, plan);
-    if (view.lights.empty()) {
+    const bool has_light = std::any_of(view.lights.begin(), view.lights.end(),
+                                       [](const PlannedLight& light) { return !light.is_alpha; });
+    if (!has_light) {
       denoise_whole(view, plan);
       continue;
     }

@@ -95,12 +95,11 @@ Imf::FrameBuffer Encoder::fill(const Imath::Box2i& area, int first,
   for (Band& band : bands_) {
     if (band.replacement) {
       const Plane<float>& pixels = smaller.empty() ? *band.replacement : smaller[next++];
-      const ExrPack as =
-          band.channel->type == ExrType::kHalf ? ExrPack::kClampedHalf : ExrPack::kFloat;
-      const ExrOverflow found = pack_rows(pixels, first, rows, as, band.values.data());
+      const bool as_half = band.channel->type == ExrType::kHalf;
+      const ExrOverflow found = pack_rows(pixels, first, rows, as_half, band.values.data());
       if (count) {
-        report_.clamped += found.clamped;
-        report_.not_finite += found.not_finite;
+        report_.values.clamped += found.clamped;
+        report_.values.not_finite += found.not_finite;
       }
     }
     all.insert(band.channel->name, band.slice(area));

@@ -18,6 +18,12 @@ namespace eigenlight {
 
 enum class ExrType { kHalf, kFloat, kUint };
 
+/// Values of channels that were written.
+struct ExrOverflow {
+  std::int64_t clamped = 0;     ///< finite, but beyond the range of half: written as +-65504
+  std::int64_t not_finite = 0;  ///< NaN and Inf, written as they are
+};
+
 /// A rectangle of pixels in the coordinates of the display window.
 struct ExrWindow {
   int x = 0, y = 0, width = 0, height = 0;
@@ -67,8 +73,9 @@ using ExrValue = std::variant<int, float, double, std::string, ExrMatrix, std::a
 /// An open file. Members may be called from several threads; decoding is one at a time.
 class ExrFile {
  public:
-  /// Opens `path`, which stays open, and reads its headers. Throws std::runtime_error, or BadFile
-  /// for a kind of file that no version of it could make readable; both name the file in one line.
+  /// Opens `path`, which stays open, and reads its headers. Throws BadFile if it is no OpenEXR
+  /// file, std::runtime_error if it is not there, damaged, or not whole yet; both name the file in
+  /// one line.
   explicit ExrFile(const std::filesystem::path& path);
   ~ExrFile();
   ExrFile(ExrFile&&) noexcept;

@@ -7,11 +7,13 @@
 #include <array>
 #include <cstring>
 
+#include "frame/bad_file.h"
+
 namespace eigenlight {
 namespace {
 
 constexpr std::size_t kMaxName = 255;
-constexpr std::uint32_t kMagic = 20000630;
+constexpr std::array<unsigned char, 4> kMagic{0x76, 0x2f, 0x31, 0x01};
 
 std::uint32_t read_word(ExrInput& file) {
   std::array<unsigned char, 4> bytes{};
@@ -48,6 +50,24 @@ std::vector<ExrRawAttribute> read_attributes(ExrInput& file) {
   }
 }
 
+// A file that is still being written may be short, or hold zeros; any other start is that of
+// another kind of file.
+void check_start(ExrInput& file) {
+  std::array<unsigned char, 8> bytes{};
+  const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), bytes.size()));
+  file.read_at(0, bytes.data(), count);
+  const auto end = bytes.begin() + static_cast<std::ptrdiff_t>(count);
+  if (count == bytes.size() && std::all_of(bytes.begin(), end, [](auto b) { return b == 0; })) {
+    throw Iex::InputExc("it starts with zeros: not written yet");
+  }
+  if (!std::equal(bytes.begin(),
+                  bytes.begin() + static_cast<std::ptrdiff_t>(std::min(count, kMagic.size())),
+                  kMagic.begin())) {
+    throw BadFile(fmt::format("{}: cannot read: not an OpenEXR file", file.fileName()));
+  }
+  if (count < bytes.size()) throw Iex::InputExc("the file ends early");
+}
+
 void check_attributes(const std::vector<ExrRawAttribute>& attributes) {
   for (const char* needed :
        {"channels", "compression", "dataWindow", "displayWindow", "lineOrder"}) {
@@ -61,12 +81,13 @@ void check_attributes(const std::vector<ExrRawAttribute>& attributes) {
 }  // namespace
 
 ExrRawHeader scan_exr_header(ExrInput& file) {
-  file.seekg(0);
-  if (file.size() < 8 || read_word(file) != kMagic) throw Iex::InputExc("not an OpenEXR file");
+  check_start(file);
+  file.seekg(kMagic.size());
   ExrRawHeader header;
   header.version = read_word(file);
   if ((header.version & 0xffU) != 2) {
-    throw Iex::InputExc(fmt::format("version {} of OpenEXR, expected 2", header.version & 0xffU));
+    throw BadFile(fmt::format("{}: cannot read: version {} of OpenEXR, expected 2", file.fileName(),
+                              header.version & 0xffU));
   }
   do {
     std::vector<ExrRawAttribute> attributes = read_attributes(file);

@@ -24,8 +24,9 @@ struct ExrRawHeader {
   [[nodiscard]] bool is_multipart() const { return (version & 0x1000U) != 0; }
 };
 
-/// Throws Iex::InputExc, before anything large is allocated, if the file is not OpenEXR, ends
-/// within the header, or lacks an attribute that pixels need.
+/// Before anything large is allocated, throws BadFile if the file is of another kind or of another
+/// version of OpenEXR, and Iex::InputExc if it ends within the header, starts with zeros, or lacks
+/// an attribute that pixels need: a file that is still being written may become whole.
 [[nodiscard]] ExrRawHeader scan_exr_header(ExrInput& file);
 
 }  // namespace eigenlight

@@ -15,19 +15,17 @@ namespace {
 constexpr float kMaxHalf = 65504.0f;
 constexpr float kRoundsToInf = 65520.0f;  // halfway to the next power of two
 
-ExrOverflow count(const float* row, int width, ExrPack as) {
+ExrOverflow count(const float* row, int width, bool as_half) {
   ExrOverflow found;
   for (int x = 0; x < width; ++x) {
     found.not_finite += !std::isfinite(row[x]);
-    found.clamped +=
-        as == ExrPack::kClampedHalf && std::isfinite(row[x]) && std::abs(row[x]) >= kRoundsToInf;
+    found.clamped += as_half && std::isfinite(row[x]) && std::abs(row[x]) >= kRoundsToInf;
   }
   return found;
 }
 
-std::uint16_t to_half(float value, ExrPack as) {
-  if (as == ExrPack::kClampedHalf && std::isfinite(value))
-    value = std::clamp(value, -kMaxHalf, kMaxHalf);
+std::uint16_t to_half(float value) {
+  if (std::isfinite(value)) value = std::clamp(value, -kMaxHalf, kMaxHalf);
   return Imath::half(value).bits();
 }
 
@@ -54,19 +52,19 @@ std::vector<Share> shares(int from, int to) {
 
 }  // namespace
 
-ExrOverflow pack_rows(const Plane<float>& plane, int first, int rows, ExrPack as, char* to) {
+ExrOverflow pack_rows(const Plane<float>& plane, int first, int rows, bool as_half, char* to) {
   const auto width = static_cast<std::size_t>(plane.width());
   std::vector<ExrOverflow> found(static_cast<std::size_t>(rows));
   parallel_for(rows, [&](int i) {
     const float* row = plane.row(first + i);
-    found[static_cast<std::size_t>(i)] = count(row, plane.width(), as);
-    if (as == ExrPack::kFloat) {
+    found[static_cast<std::size_t>(i)] = count(row, plane.width(), as_half);
+    if (!as_half) {
       std::memcpy(to + static_cast<std::size_t>(i) * width * 4, row, width * 4);
       return;
     }
     char* out = to + static_cast<std::size_t>(i) * width * 2;
     for (std::size_t x = 0; x < width; ++x) {
-      const std::uint16_t bits = to_half(row[x], as);
+      const std::uint16_t bits = to_half(row[x]);
       std::memcpy(out + 2 * x, &bits, 2);
     }
   });

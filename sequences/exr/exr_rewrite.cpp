@@ -83,8 +83,8 @@ Plan make_plan(const ExrFile::State& in, std::span<const ExrReplacement> replace
   for (int i = 0; i < in.file->parts(); ++i) {
     const Imf::Header& header = in.file->header(i);
     if (header.hasType() && !Imf::isSupportedType(header.type())) {
-      throw Iex::InputExc(
-          fmt::format("part '{}' is of the unknown type '{}'", header.name(), header.type()));
+      throw BadFile(fmt::format("{}: part '{}' is of the unknown type '{}'", in.path.string(),
+                                header.name(), header.type()));
     }
     const bool is_new =
         std::any_of(replacements.begin(), replacements.end(), [&](const ExrReplacement& r) {

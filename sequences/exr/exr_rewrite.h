@@ -1,7 +1,6 @@
 // Copies of OpenEXR files in which some channels have new pixels and nothing else changes.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -18,8 +17,7 @@ struct ExrReplacement {
 };
 
 struct ExrRewriteReport {
-  std::int64_t clamped = 0;     ///< values beyond the range of half, written as +-65504
-  std::int64_t not_finite = 0;  ///< NaN and Inf among the new pixels, written as they are
+  ExrOverflow values;  ///< among the new pixels
   /// Parts whose compression loses precision: "part 'x': DWAA becomes ZIP"; without the name of the
   /// part in files of one part.
   std::vector<std::string> recompressed;

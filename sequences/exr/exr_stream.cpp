@@ -14,6 +14,7 @@
 #include <new>
 #include <stdexcept>
 
+#include "frame/bad_file.h"
 #include "frame/float_traps.h"
 #include "frame/tiles.h"
 #include "sequences/exr/exr_file.h"
@@ -56,7 +57,8 @@ ExrInput::ExrInput(const std::filesystem::path& path) : IStream(path.c_str()) {
   if (descriptor_ < 0 || ::fstat(descriptor_, &status) != 0) fail(path, std::strerror(errno));
   if (!S_ISREG(status.st_mode)) {
     ::close(descriptor_);
-    fail(path, S_ISDIR(status.st_mode) ? "is a directory" : "not a regular file");
+    throw BadFile(fmt::format("{}: cannot read: {}", path.string(),
+                              S_ISDIR(status.st_mode) ? "is a directory" : "not a regular file"));
   }
   size_ = static_cast<std::uint64_t>(status.st_size);
 }

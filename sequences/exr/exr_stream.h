@@ -14,7 +14,7 @@ namespace eigenlight {
 /// An open file to read. Not a mapping: one that shrinks meanwhile must be an error, not a signal.
 class ExrInput : public Imf::IStream {
  public:
-  /// Throws std::runtime_error naming the file.
+  /// Throws BadFile naming what is no regular file, std::runtime_error naming the file else.
   explicit ExrInput(const std::filesystem::path& path);
   ~ExrInput() override;
   ExrInput(const ExrInput&) = delete;

@@ -81,12 +81,14 @@ Imf::Header make_header(std::span<const ExrChannel> channels,
 }
 
 // Values of a channel one row behind the other.
-std::vector<char> pack(const ExrChannel& channel) {
+std::vector<char> pack(const ExrChannel& channel, ExrOverflow& overflow) {
   const Extent extent = extent_of(channel);
   std::vector<char> values(extent.pixels() * bytes_of(channel.type));
   if (const auto* plane = std::get_if<const Plane<float>*>(&channel.pixels)) {
-    const ExrPack as = channel.type == ExrType::kHalf ? ExrPack::kHalf : ExrPack::kFloat;
-    pack_rows(**plane, 0, extent.height, as, values.data());
+    const bool as_half = channel.type == ExrType::kHalf;
+    const ExrOverflow found = pack_rows(**plane, 0, extent.height, as_half, values.data());
+    overflow.clamped += found.clamped;
+    overflow.not_finite += found.not_finite;
     return values;
   }
   const auto& plane = *std::get<const Plane<std::uint32_t>*>(channel.pixels);
@@ -99,18 +101,19 @@ std::vector<char> pack(const ExrChannel& channel) {
 
 }  // namespace
 
-void write_exr(const std::filesystem::path& path, std::span<const ExrChannel> channels,
-               std::span<const ExrAttribute> attributes) {
+ExrOverflow write_exr(const std::filesystem::path& path, std::span<const ExrChannel> channels,
+                      std::span<const ExrAttribute> attributes) {
   const FloatTrapsOff layers_may_hold_nan_and_half_may_overflow;
   use_our_threads_for_exr();
   const Imf::Header header = make_header(channels, attributes);
   // Encodes to memory: on a full disk our own write then fails, with the system's reason.
   Memory encoded;
+  ExrOverflow overflow;
   with_exr_errors(path, "cannot write", [&] {
     std::vector<std::vector<char>> values;
     Imf::FrameBuffer frame;
     for (const ExrChannel& channel : channels) {
-      values.push_back(pack(channel));
+      values.push_back(pack(channel, overflow));
       const std::size_t step = bytes_of(channel.type);
       const auto width = static_cast<std::size_t>(extent_of(channel).width);
       frame.insert(channel.name,
@@ -121,6 +124,7 @@ void write_exr(const std::filesystem::path& path, std::span<const ExrChannel> ch
     file.writePixels(extent_of(channels.front()).height);
   });
   write_file_atomically(path, encoded.bytes());
+  return overflow;
 }
 
 }  // namespace eigenlight

@@ -24,11 +24,11 @@ struct ExrAttribute {
   std::variant<int, float, std::string, ExrMatrix> value;
 };
 
-/// Writes a scanline file, ZIP compressed, with write_file_atomically(). NaN and Inf are kept; a
-/// finite value beyond 65504 becomes Inf in a half channel, so choose kFloat for such a layer.
-/// Equal input gives equal bytes. Throws std::invalid_argument unless all planes have the same
-/// extent, std::runtime_error naming the file if it cannot be written.
-void write_exr(const std::filesystem::path& path, std::span<const ExrChannel> channels,
-               std::span<const ExrAttribute> attributes);
+/// Writes a scanline file, ZIP compressed, with write_file_atomically(), and counts the values that
+/// did not fit. NaN and Inf are kept; choose kFloat for a layer with values beyond 65504. Equal
+/// input gives equal bytes. Throws std::invalid_argument unless all planes have the same extent,
+/// std::runtime_error naming the file if it cannot be written.
+ExrOverflow write_exr(const std::filesystem::path& path, std::span<const ExrChannel> channels,
+                      std::span<const ExrAttribute> attributes);
 
 }  // namespace eigenlight

@@ -19,6 +19,7 @@ struct FakeShot {
   float noise = 0.5f;  ///< of light, over its mean
   int nan_pixels = 0;  ///< first pixels of row 10 whose light is NaN
   bool has_albedo = true;
+  bool has_encoded_motion = false;  ///< as colors: 0.5 is still, 1 is 10 pixels
 
   /// Paint and light of the wall, by its own column.
   [[nodiscard]] static float paint(int u, int y, int c) {
@@ -102,8 +103,9 @@ inline void FakeShot::write(const std::filesystem::path& path, int frame) const 
   }
   file.add("View.Combined.A", [](int, int, int) { return 1.0f; });
   file.add("View.Depth.Z", [](int, int, int) { return 5.0f; });
-  file.add("View.Vector.X", [&](int, int, int) { return static_cast<float>(speed); });
-  file.add("View.Vector.Y", [](int, int, int) { return 0.0f; });
+  const float zero = has_encoded_motion ? 0.5f : 0.0f, unit = has_encoded_motion ? 0.05f : 1.0f;
+  file.add("View.Vector.X", [&](int, int, int) { return zero + unit * static_cast<float>(speed); });
+  file.add("View.Vector.Y", [&](int, int, int) { return zero; });
   file.add("matte", [](int x, int y, int) { return 0.1f * static_cast<float>(x * y); });
   file.write(path);
 }

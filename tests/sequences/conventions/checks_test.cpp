@@ -101,6 +101,19 @@ TEST(NoiseCorrelation, IsNotMeasuredAcrossEdges) {
   EXPECT_FALSE(noise_correlation(noisy_light(kExtent, 3), guides));
 }
 
+// Only blue has correlated noise: who weighs it little hardly sees it.
+TEST(CorrelatedNoise, IsThatOfLuminanceInTheFilesOwnPrimaries) {
+  Planes<3> light = noisy_light(kExtent, 3);
+  const Planes<3> smooth = blurred(noisy_light(kExtent, 4), 1);
+  light[2].copy_from(smooth[2]);
+  const RawGuides guides = flat_guides(kExtent);
+  const auto blue = noise_correlation(light, guides, {0.0, 0.0, 1.0});
+  const auto green = noise_correlation(light, guides, {0.0, 1.0, 0.0});
+  ASSERT_TRUE(blue && green);
+  EXPECT_GT(*blue, 0.3);
+  EXPECT_NEAR(*green, 0.0, 0.05);
+}
+
 TEST(NoisyFeature, IsNoisierThanTheLight) {
   const Planes<3> light = noisy_light(kExtent, 1, 0.1f), albedo = noisy_light(kExtent, 2, 0.5f);
   const auto line = check_noisy_feature(albedo, light, "albedo");

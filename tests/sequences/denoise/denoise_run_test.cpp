@@ -132,7 +132,7 @@ TEST_F(DenoiseRun, AResumedRunHasTheBitsOfAnUninterruptedOne) {
     EXPECT_EQ(read_whole_file(out(frame, "whole")), read_whole_file(out(frame, "stopped")))
         << frame;
   }
-  EXPECT_FALSE(std::filesystem::exists(dir_ / "stopped/.eigenlight-state"));
+  EXPECT_FALSE(std::filesystem::exists(dir_ / "stopped/.s.1.exr.eigenlight-state"));
 }
 
 TEST_F(DenoiseRun, ACheckpointOfOtherOptionsIsRefused) {

@@ -130,6 +130,36 @@ TEST(LayerPlan, LayersThatCannotBeUsedDoNotStopARun) {
   EXPECT_THAT(row_of(plan, "direct").why, HasSubstr("deep"));
 }
 
+TEST(LayerPlan, UnusableLayersMakeWayForTheNextName) {
+  FileLayer depth = layer("depth", {}), albedo = color("albedo"), emission = color("emission");
+  depth.type = ExrType::kUint;
+  albedo.is_subsampled = true;
+  emission.is_deep = true;
+  const LayerPlan plan = plan_layers({color(""), depth, layer("Z", {}), albedo, color("basecolor"),
+                                      emission, color("direct"), layer("sheen", {})},
+                                     {});
+  const ViewPlan& view = plan.views.at(0);
+  EXPECT_EQ(view.depth->name, "Z");
+  EXPECT_EQ(view.albedo->name, "basecolor");
+  EXPECT_TRUE(view.emission.empty());
+  EXPECT_THAT(names_of_lights(view), ElementsAre("direct over basecolor"));
+  EXPECT_EQ(row_of(plan, "depth").why, "integers, expected half or float");
+  EXPECT_EQ(row_of(plan, "sheen").why, "1 channels, expected 3");
+  EXPECT_THAT(
+      [&] {
+        (void)plan_layers({color(""), depth}, {.map = {"depth=depth"}});
+      },
+      ThrowsMessage<std::invalid_argument>(HasSubstr("--map depth=depth: integers")));
+}
+
+TEST(LayerPlan, DirectLightIsToldByTheTableOfNames) {
+  const LayerPlan plan = plan_layers(cycles(), {});
+  std::vector<bool> direct;
+  for (const PlannedLight& light : plan.views.at(0).lights) direct.push_back(light.is_direct);
+  EXPECT_THAT(direct, ElementsAre(true, false, true, false));
+  EXPECT_TRUE(plan_layers({color("")}, {}).views.at(0).lights.at(0).is_direct);
+}
+
 TEST(LayerPlan, EachViewHasItsOwnPlan) {
   FileLayer left = color(""), right = color("");
   left.view = "left";

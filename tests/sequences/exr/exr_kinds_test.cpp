@@ -83,7 +83,7 @@ TEST_P(EachKind, OnlyTheChosenChannelChanges) {
   const ExrRewriteReport report = rewrite_exr(file, dir / "out.exr", replacements);
   EXPECT_THAT(report.recompressed, IsEmpty());
   EXPECT_EQ(report.levels.empty(), kind.levels == Imf::ONE_LEVEL);
-  EXPECT_EQ(report.clamped, 0);
+  EXPECT_EQ(report.values.clamped, 0);
   if (kind.is_tiled) {
     EXPECT_TRUE(passenger_levels(dir / "in.exr") == passenger_levels(dir / "out.exr"));
   }

@@ -159,8 +159,8 @@ TEST(ExrRewrite, ClampsAndCountsWhatHalfCannotHold) {
   const ExrReplacement replacements[] = {{0, &pixels}, {1, &pixels}};
   const ExrRewriteReport report =
       rewrite_exr(ExrFile(dir / "in.exr"), dir / "out.exr", replacements);
-  EXPECT_EQ(report.clamped, 2);
-  EXPECT_EQ(report.not_finite, 4);
+  EXPECT_EQ(report.values.clamped, 2);
+  EXPECT_EQ(report.values.not_finite, 4);
   const std::vector<Plane<float>> read = ExrFile(dir / "out.exr").read(std::array{0, 1});
   EXPECT_EQ(read[0](0, 0), 65504.0f);
   EXPECT_EQ(read[0](1, 0), 65504.0f);

@@ -79,6 +79,23 @@ TEST(ExrIo, KeepsNanAndInf) {
   }
 }
 
+TEST(ExrIo, WhatHalfCannotHoldIsClampedAndCounted) {
+  const TempDir dir;
+  Plane<float> plane({5, 1});
+  const float values[] = {65504.0f, 65519.0f, 65520.0f, -1e30f,
+                          std::numeric_limits<float>::infinity()};
+  for (int x = 0; x < 5; ++x) plane(x, 0) = values[x];
+  const ExrChannel half[] = {{"a.R", ExrType::kHalf, &plane}, {"a.G", ExrType::kFloat, &plane}};
+  const ExrOverflow overflow = write_exr(dir / "a.exr", half, {});
+  EXPECT_EQ(overflow.clamped, 2);
+  EXPECT_EQ(overflow.not_finite, 2);  // one in each channel
+  const Planes<2> read = ExrReader(dir / "a.exr").read_planes<2>("a");
+  for (int x = 0; x < 5; ++x) {
+    EXPECT_EQ(read[1](x, 0), plane(x, 0));
+    EXPECT_EQ(read[0](x, 0), x == 4 ? plane(4, 0) : x == 3 ? -65504.0f : 65504.0f) << x;
+  }
+}
+
 TEST(ExrIo, KeepsAttributes) {
   const TempDir dir;
   const Plane<float> plane({2, 2});
