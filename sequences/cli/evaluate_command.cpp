@@ -50,6 +50,8 @@ Json to_json(const Evaluation& evaluation) {
   json["surface_from"] = evaluation.surface_from;
   if (!evaluation.age_from.empty()) json["age_from"] = evaluation.age_from;
   json["bad_pixels"] = evaluation.bad_pixels;
+  json["outside_pixels"] = evaluation.outside_pixels;
+  json["notes"] = evaluation.notes;
   json["skipped"] = Json::array();
   for (const Skipped& skipped : evaluation.skipped) {
     json["skipped"].push_back({{"frame", skipped.frame}, {"reason", skipped.reason}});
@@ -93,6 +95,10 @@ std::string to_table(const Evaluation& evaluation) {
   if (evaluation.bad_pixels > 0) {
     text += fmt::format("left out: {} pixels with NaN or Inf\n", evaluation.bad_pixels);
   }
+  if (evaluation.outside_pixels > 0) {
+    text += fmt::format("left out: {} pixels outside the data window\n", evaluation.outside_pixels);
+  }
+  for (const std::string& note : evaluation.notes) text += fmt::format("note: {}\n", note);
   for (const Skipped& skipped : evaluation.skipped) {
     text += fmt::format("left out: frame {}: {}\n", skipped.frame, skipped.reason);
   }

@@ -52,7 +52,7 @@ class ExrReader {
   /// All channels of a layer, R G B A or X Y Z W first and in that order. Pixels of the display
   /// window outside the data window are 0. Throws BadFile naming file and layer if the layer is
   /// missing, deep, subsampled or holds integers, or if the display window is larger than planes
-  /// may be; std::runtime_error if it cannot be decoded.
+  /// may be; std::runtime_error if it cannot be decoded, or is larger than the machine's memory.
   [[nodiscard]] std::vector<Plane<float>> read(std::string_view layer) const;
   /// The first N channels of a layer. Throws BadFile if it has fewer.
   template <int N>
@@ -63,6 +63,13 @@ class ExrReader {
     for (std::size_t c = 0; c < N; ++c) planes[c] = std::move(found[c]);
     return planes;
   }
+  /// Red, green and blue of a layer; of a gray one, its one channel three times. Throws BadFile if
+  /// it has two.
+  [[nodiscard]] Planes<3> read_colors(std::string_view layer) const;
+  /// Where a layer has pixels, in pixels of the display window; may lie outside of it.
+  [[nodiscard]] ExrWindow data_window(std::string_view layer) const;
+  /// Primaries of the colors; those of Rec. 709 where the file does not say.
+  [[nodiscard]] ExrChromaticities chromaticities() const;
   /// The first channel of a layer of integers. Throws BadFile if it is not of type uint.
   [[nodiscard]] Plane<std::uint32_t> read_uint(std::string_view layer) const;
 

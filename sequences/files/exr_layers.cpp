@@ -15,7 +15,7 @@ struct Aliases {
 
 // As in files of Cycles, Arnold, RenderMan, V-Ray and pbrt.
 constexpr std::array<Aliases, 8> kAliases{{
-    {"color", {"", "Combined", "RGBA", "Ci"}},
+    {"color", {"", "Combined", "RGBA", "Ci", "Y"}},
     {"albedo", {"DiffCol", "diffuse_albedo", "Albedo", "Denoising Albedo"}},
     {"N", {"Normal", "normal", "Ns", "Denoising Normal"}},
     {"Z", {"Depth", "depth", "zfiltered", "Denoising Depth"}},

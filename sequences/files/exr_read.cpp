@@ -5,9 +5,11 @@
 
 #include "frame/bad_file.h"
 #include "frame/named.h"
+#include "sequences/exr/exr_colors.h"
 #include "sequences/exr/exr_file.h"
 #include "sequences/files/exr_io.h"
 #include "sequences/files/exr_layers.h"
+#include "sequences/files/machine.h"
 
 namespace eigenlight {
 namespace {
@@ -70,6 +72,14 @@ Plane<T> ExrReader::State::to_display(Plane<T> plane, int channel) const {
                               path(), display.width, display.height, kMaxSide));
   }
   const int part = file.channels()[static_cast<std::size_t>(channel)].part;
+  // A header of a few bytes must not take all memory: three channels, and as much for work on them.
+  const double needed = 24.0 * static_cast<double>(display.width) * display.height;
+  if (needed > machine_memory()) {
+    throw std::runtime_error(
+        fmt::format("{}: display window of {}x{} pixels needs about {:.0f} GB of memory, this "
+                    "machine has {:.0f}",
+                    path(), display.width, display.height, needed * 1e-9, machine_memory() * 1e-9));
+  }
   try {
     return place(std::move(plane), file.parts()[static_cast<std::size_t>(part)].data, display);
   } catch (const std::bad_alloc&) {
@@ -109,6 +119,31 @@ std::vector<Plane<float>> ExrReader::read(std::string_view layer) const {
     planes[i] = state_->to_display(std::move(planes[i]), channels[i]);
   }
   return planes;
+}
+
+Planes<3> ExrReader::read_colors(std::string_view layer) const {
+  std::vector<Plane<float>> found = read(layer);
+  if (found.size() == 2) check_channels(layer, 2, 3);
+  Planes<3> planes;
+  for (std::size_t c = 3; c-- > 0;) {
+    planes[c] = found.size() >= 3 || c == 0 ? std::move(found[c]) : found[0].clone();
+  }
+  return planes;
+}
+
+ExrWindow ExrReader::data_window(std::string_view layer) const {
+  const auto channel = static_cast<std::size_t>(state_->channels_of(layer).front());
+  const auto part = static_cast<std::size_t>(state_->file.channels()[channel].part);
+  ExrWindow window = state_->file.parts()[part].data;
+  window.x -= state_->file.display_window().x;
+  window.y -= state_->file.display_window().y;
+  return window;
+}
+
+ExrChromaticities ExrReader::chromaticities() const {
+  const std::optional<ExrValue> found = state_->file.attribute("chromaticities");
+  const auto* colors = found ? std::get_if<ExrChromaticities>(&*found) : nullptr;
+  return colors ? *colors : rec709_chromaticities();
 }
 
 Plane<std::uint32_t> ExrReader::read_uint(std::string_view layer) const {

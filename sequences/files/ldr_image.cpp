@@ -26,7 +26,10 @@ Planes<3> read_ldr_image(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path, error)) {
     throw std::runtime_error(fmt::format("{}: no such file", path.string()));
   }
-  const auto file = OIIO::ImageInput::open(path.string());
+  // Else colors are multiplied by alpha.
+  OIIO::ImageSpec as_stored;
+  as_stored.attribute("oiio:UnassociatedAlpha", 1);
+  const auto file = OIIO::ImageInput::open(path.string(), &as_stored);
   if (!file) throw std::runtime_error(fmt::format("{}: {}", path.string(), OIIO::geterror()));
   const OIIO::ImageSpec& spec = file->spec();
   const auto channels = static_cast<std::size_t>(spec.nchannels);

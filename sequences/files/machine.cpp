@@ -2,6 +2,7 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <ctime>
 #include <fstream>
@@ -39,6 +40,11 @@ std::string instruction_set() {
 Machine this_machine() {
   return {processor_name(), instruction_set(), "GCC " __VERSION__,
           std::thread::hardware_concurrency()};
+}
+
+double machine_memory() {
+  return static_cast<double>(::sysconf(_SC_PHYS_PAGES)) *
+         static_cast<double>(::sysconf(_SC_PAGESIZE));
 }
 
 nlohmann::ordered_json to_json(const Machine& machine) {

@@ -14,6 +14,9 @@ struct Machine {
 };
 [[nodiscard]] Machine this_machine();
 
+/// Bytes of memory that the machine has.
+[[nodiscard]] double machine_memory();
+
 /// The members by name.
 [[nodiscard]] nlohmann::ordered_json to_json(const Machine& machine);
 /// `Intel Xeon, 2 cores, AVX-512`.

@@ -46,7 +46,7 @@ Planes<3> crop_middle(const Planes<3>& image, int side, const std::string& name)
 }
 
 Planes<3> read_image(const std::string& name) {
-  return is_ldr_name(name) ? read_ldr_image(name) : ExrReader(name).read_planes<3>("");
+  return is_ldr_name(name) ? read_ldr_image(name) : ExrReader(name).read_colors("color");
 }
 
 // Light of `image` as a path tracer would see it: of one deviate for all channels.

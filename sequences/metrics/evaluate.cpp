@@ -39,8 +39,11 @@ std::vector<Sequence> sequences_of(const EvaluateOptions& options) {
   std::vector<Sequence> sequences{parse_sequence(options.test), parse_sequence(options.reference)};
   if (!options.reference_b.empty()) sequences.push_back(parse_sequence(options.reference_b));
   for (const Sequence& sequence : sequences) {
-    EL_CHECK(sequence.name.is_single() == sequences.front().name.is_single(),
-             "'{}' is one image and '{}' is a sequence", options.test, sequence.name.text());
+    const bool is_single = sequences.front().name.is_single();
+    EL_CHECK(sequence.name.is_single() == is_single,
+             "'{}' is one image and '{}' is a sequence; expected two of a kind",
+             is_single ? options.test : sequence.name.text(),
+             is_single ? sequence.name.text() : options.test);
     EL_CHECK(is_ldr_name(sequence.name.text()) == is_ldr_name(options.test),
              "'{}' and '{}': an 8-bit picture compares with 8-bit pictures only", options.test,
              sequence.name.text());
@@ -126,6 +129,31 @@ int step_of(const std::vector<int>& frames) {
   return step;
 }
 
+// Where something of each frame comes from.
+class Origins {
+ public:
+  void add(const std::string& origin, int frame) {
+    auto found = std::find_if(frames_.begin(), frames_.end(),
+                              [&](const auto& entry) { return entry.first == origin; });
+    if (found == frames_.end()) found = frames_.insert(found, {origin, {}});
+    found->second.push_back(frame);
+  }
+  /// The origin of all; several with their frames.
+  [[nodiscard]] std::string text() const {
+    if (frames_.size() < 2) return frames_.empty() ? "" : frames_.front().first;
+    std::string text;
+    for (const auto& [origin, frames] : frames_) {
+      text +=
+          fmt::format("{}{} in {}{}", text.empty() ? "" : ", ", origin.empty() ? "nowhere" : origin,
+                      text.empty() ? "frames " : "", format_frame_range(frames));
+    }
+    return text;
+  }
+
+ private:
+  std::vector<std::pair<std::string, std::vector<int>>> frames_;
+};
+
 // Reads and measures frame after frame.
 class Evaluator {
  public:
@@ -145,8 +173,10 @@ class Evaluator {
     if (!result_.step && result_.frames.empty()) result_.step = loaded.step;
     loaded.images.follows = last_ && std::abs(frame - *last_) == step_;
     result_.frames.push_back(metrics_.add(std::move(loaded.images)));
-    result_.surface_from = loaded.surface_from;
-    result_.age_from = loaded.age_from;
+    result_.outside_pixels += loaded.outside_pixels;
+    surface_from_.add(loaded.surface_from, frame);
+    age_from_.add(loaded.age_from, frame);
+    if (!loaded.note.empty() && result_.notes.empty()) result_.notes.push_back(loaded.note);
     last_ = frame;
   }
   void skip(int frame, std::string reason) {
@@ -159,6 +189,8 @@ class Evaluator {
           fmt::format("no frame could be measured; {}", result_.skipped.front().reason));
     }
     result_.mean = mean_figures(result_.frames);
+    result_.surface_from = surface_from_.text();
+    result_.age_from = age_from_.text();
     if (result_.step) result_.lag = measure_lag(light_levels(result_.frames), *result_.step);
     if (options_.step && !result_.lag) fail_without_step(*options_.step);
     return std::move(result_);
@@ -168,6 +200,7 @@ class Evaluator {
   const EvaluateOptions& options_;
   SequenceMetrics metrics_;
   Evaluation result_;
+  Origins surface_from_, age_from_;
   int step_;
   std::optional<int> last_;  // frame that was measured last
 };

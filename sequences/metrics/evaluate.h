@@ -37,19 +37,25 @@ struct Skipped {
 struct Evaluation {
   std::vector<FrameFigures> frames;
   SetFigures mean;
-  std::vector<Skipped> skipped;  ///< frames
-  std::int64_t bad_pixels = 0;   ///< with NaN or Inf, left out of frames that were measured
-  MetricOptions metrics;         ///< as used
-  std::optional<int> step;       ///< first frame of a light step, as given or as found
-  std::optional<Lag> lag;        ///< over `frames`; absent if there is no step to be seen in them
-  std::string surface_from;      ///< where the pixel sets come from: `test id`, or `all pixels`
-  std::string age_from;          ///< `test age`, or empty: no young and old pixels
+  std::vector<Skipped> skipped;     ///< frames
+  std::int64_t bad_pixels = 0;      ///< with NaN or Inf, left out of frames that were measured
+  std::int64_t outside_pixels = 0;  ///< left out: outside of the data window of a file
+  MetricOptions metrics;            ///< as used
+  std::optional<int> step;          ///< first frame of a light step, as given or as found
+  std::optional<Lag> lag;  ///< over `frames`; absent if there is no step to be seen in them
+  /// Where the pixel sets come from: `test id`, or `all pixels`; where frames differ, with them:
+  /// `test Z in frames 1-2, all pixels in 3-4`.
+  std::string surface_from;
+  std::string age_from;            ///< `test age`, or empty: no young and old pixels
+  std::vector<std::string> notes;  ///< lines for people: what the figures do not tell
 };
 
 /// Matches the sequences by frame number and measures each frame. Surfaces are where the layer `id`
 /// is not 0, else where `Z` is finite and below 1e10 (what Cycles writes for the background); from
 /// the test, else from the first reference, else all pixels count. Ages are the layer `age`, found
-/// the same way. PNG and JPEG hold display values and have no layers; they compare with their like.
+/// the same way. Pixels outside of the data window of any file count nowhere. Layers of one channel
+/// are gray. Colors are compared as the numbers that they are: that primaries differ is noted. PNG
+/// and JPEG hold display values and have no layers; they compare with their like.
 ///
 /// Temporal figures compare neighbors: frames as far apart as the nearest two of the list.
 ///

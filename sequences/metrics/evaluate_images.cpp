@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "frame/bad_file.h"
+#include "sequences/exr/exr_colors.h"
 #include "sequences/files/exr_io.h"
 #include "sequences/files/exr_layers.h"
 #include "sequences/files/ldr_image.h"
@@ -24,6 +26,7 @@ struct Source {
   std::string path;
   Planes<3> colors;
   std::optional<ExrReader> reader;  // none for 8-bit pictures
+  ExrWindow window;                 // where it has pixels
 };
 
 // The name by which the file has the layer that was asked for.
@@ -51,9 +54,13 @@ Source open_source(const std::filesystem::path& path, const std::string& layer,
   source.path = path.string();
   if (is_ldr_name(path)) {
     source.colors = read_ldr_image(path);
+    const Extent extent = source.colors[0].extent();
+    source.window = {0, 0, extent.width, extent.height};
   } else {
     source.reader.emplace(path);
-    source.colors = source.reader->read_planes<3>(layer_of(*source.reader, layer, prefix));
+    const std::string name = layer_of(*source.reader, layer, prefix);
+    source.colors = source.reader->read_colors(name);
+    source.window = source.reader->data_window(name);
   }
   return source;
 }
@@ -83,39 +90,50 @@ void check_mask(const Source& source, Extent mask, const char* layer) {
                                        layer, mask.width, mask.height, size.width, size.height));
 }
 
+// Runs `read` if the file has that layer. Nobody asked for it: one of another type is as good as
+// none.
+template <typename Read>
+bool read_mask(const Source& source, const char* layer, const Read& read) {
+  if (!source.reader->has_layer(layer)) return false;
+  try {
+    read();
+    return true;
+  } catch (const BadFile&) {
+    return false;
+  }
+}
+
 // True if the file tells surface from background.
 bool mark_surface(const Source& source, LoadedFrame& out, const char* role) {
   if (!source.reader) return false;
-  if (source.reader->has_layer("id")) {
+  const bool has_ids = read_mask(source, "id", [&] {
     const Plane<std::uint32_t> id = source.reader->read_uint("id");
     check_mask(source, id.extent(), "id");
     mark(out.images.bits, kSurfaceBit, [&](int x, int y) { return id(x, y) != 0; });
     out.surface_from = fmt::format("{} id", role);
-    return true;
-  }
-  if (source.reader->has_layer("Z")) {
+  });
+  if (has_ids) return true;
+  return read_mask(source, "Z", [&] {
     const Planes<1> z = source.reader->read_planes<1>("Z");
     check_mask(source, z[0].extent(), "Z");
     mark(out.images.bits, kSurfaceBit,
          [&](int x, int y) { return std::isfinite(z[0](x, y)) && z[0](x, y) < kCyclesBackground; });
     out.surface_from = fmt::format("{} Z", role);
-    return true;
-  }
-  return false;
+  });
 }
 
 bool mark_ages(const Source& source, LoadedFrame& out, const char* role) {
-  if (!source.reader || !source.reader->has_layer("age")) return false;
-  const Planes<1> age = source.reader->read_planes<1>("age");
-  check_mask(source, age[0].extent(), "age");
-  const Plane<std::uint8_t>& bits = out.images.bits;
-  const auto has_surface = [&](int x, int y) { return (bits(x, y) & kSurfaceBit) != 0; };
-  mark(out.images.bits, kYoungBit,
-       [&](int x, int y) { return has_surface(x, y) && age[0](x, y) < kYoungAge; });
-  mark(out.images.bits, kOldBit,
-       [&](int x, int y) { return has_surface(x, y) && age[0](x, y) >= kYoungAge; });
-  out.age_from = fmt::format("{} age", role);
-  return true;
+  return source.reader && read_mask(source, "age", [&] {
+           const Planes<1> age = source.reader->read_planes<1>("age");
+           check_mask(source, age[0].extent(), "age");
+           const Plane<std::uint8_t>& bits = out.images.bits;
+           const auto has_surface = [&](int x, int y) { return (bits(x, y) & kSurfaceBit) != 0; };
+           mark(out.images.bits, kYoungBit,
+                [&](int x, int y) { return has_surface(x, y) && age[0](x, y) < kYoungAge; });
+           mark(out.images.bits, kOldBit,
+                [&](int x, int y) { return has_surface(x, y) && age[0](x, y) >= kYoungAge; });
+           out.age_from = fmt::format("{} age", role);
+         });
 }
 
 // What `render --perturb step` wrote to the file, if this is one of its files.
@@ -132,6 +150,32 @@ bool is_finite(const Planes<3>& colors, int x, int y) {
          std::isfinite(colors[2](x, y));
 }
 
+bool is_inside(const ExrWindow& window, int x, int y) {
+  return x >= window.x && y >= window.y && x < window.x + window.width &&
+         y < window.y + window.height;
+}
+
+// What no file shows, and what only some show, is no pixel to compare. No pixel at all is an error.
+void check_windows(const std::vector<Source*>& sources, const LoadedFrame& out) {
+  const Extent extent = out.images.bits.extent();
+  if (out.outside_pixels < static_cast<std::int64_t>(extent.pixels())) return;
+  throw BadFile(fmt::format("{}: no pixel lies in its data window and in that of {}",
+                            sources[0]->path, sources[1]->path));
+}
+
+void note_colors(const std::vector<Source*>& sources, LoadedFrame& out) {
+  const Source& test = *sources.front();
+  for (const Source* other : sources) {
+    if (!test.reader || !other->reader) return;
+    if (same_colors(test.reader->chromaticities(), other->reader->chromaticities())) continue;
+    out.note = fmt::format(
+        "the primaries of {} and {} differ (chromaticities); their numbers are compared as they "
+        "are",
+        test.path, other->path);
+    return;
+  }
+}
+
 // Counts pixels with NaN or Inf per file; the first such file is named.
 void mark_finite(const std::vector<Source*>& sources, LoadedFrame& out) {
   std::int64_t first_count = 0;
@@ -139,6 +183,11 @@ void mark_finite(const std::vector<Source*>& sources, LoadedFrame& out) {
   int first_x = 0, first_y = 0;
   mark(out.images.bits, kFiniteBit, [&](int x, int y) {
     bool is_good = true;
+    for (const Source* source : sources) {
+      if (is_inside(source->window, x, y)) continue;
+      ++out.outside_pixels;
+      return false;
+    }
     for (const Source* source : sources) {
       if (is_finite(source->colors, x, y)) continue;
       is_good = false;
@@ -173,6 +222,8 @@ LoadedFrame load_frame(int frame, const FramePaths& paths, const EvaluateOptions
   out.images.frame = frame;
   out.images.bits = Plane<std::uint8_t>(test.colors[0].extent());
   mark_finite(sources, out);
+  check_windows(sources, out);
+  note_colors(sources, out);
   if (!mark_surface(test, out, "test") && !mark_surface(reference, out, "reference")) {
     mark(out.images.bits, kSurfaceBit, [](int, int) { return true; });
     out.surface_from = "all pixels";

@@ -22,9 +22,11 @@ struct FramePaths {
 struct LoadedFrame {
   MetricFrame images;  ///< bits are filled; pixels with NaN or Inf lack kFiniteBit
   std::int64_t bad_pixels = 0;
-  std::string bad;          ///< one line on the first file with NaN or Inf, or empty
-  std::optional<int> step;  ///< first frame of a light step, as the files have it
+  std::string bad;                  ///< one line on the first file with NaN or Inf, or empty
+  std::optional<int> step;          ///< first frame of a light step, as the files have it
+  std::int64_t outside_pixels = 0;  ///< outside of the data window of a file; not kFiniteBit
   std::string surface_from, age_from;
+  std::string note;  ///< on colors of other primaries, or empty
 };
 
 /// Reads the files of one frame. Throws std::runtime_error naming the file that is missing, cannot

@@ -1,7 +1,6 @@
 #include "sequences/runs/render_plan.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <charconv>
@@ -9,6 +8,7 @@
 #include "frame/check.h"
 #include "frame/named.h"
 #include "sequences/files/frame_range.h"
+#include "sequences/files/machine.h"
 #include "sequences/files/split_list.h"
 #include "temporal/methods.h"
 
@@ -33,8 +33,7 @@ int direct_samples(const std::vector<Layer>& layers, bool is_reference, int usua
 // take about 350 bytes per pixel, a basis twice three floats.
 void check_memory(Extent extent, int bases) {
   const double needed = static_cast<double>(extent.pixels()) * (350.0 + 24.0 * bases);
-  const double present =
-      static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
+  const double present = machine_memory();
   EL_CHECK(needed <= present,
            "size {}x{}: needs about {:.0f} GB of memory, this machine has {:.0f}", extent.width,
            extent.height, needed * 1e-9, present * 1e-9);
