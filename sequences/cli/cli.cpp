@@ -51,9 +51,17 @@ std::string usage_error(const CLI::App& app, const CLI::ParseError& error,
   // CLI11 reports an unknown sub-command as a missing one.
   const bool is_unknown = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr &&
                           app.get_subcommands().empty() && args.size() > 1;
-  const std::string what =
-      is_unknown ? fmt::format("unknown command '{}'", args[1]) : one_line(error.what());
   const auto chosen = app.get_subcommands();
+  std::string what =
+      is_unknown ? fmt::format("unknown command '{}'", args[1]) : one_line(error.what());
+  // CLI11 lists them backwards, and those in front of a command after what the command lacks.
+  const std::vector<std::string> early = app.remaining(false), all = app.remaining(true);
+  if (!chosen.empty() && !early.empty()) {
+    what = fmt::format("not expected before '{}': {}; options follow the command",
+                       chosen.front()->get_name(), fmt::join(early, " "));
+  } else if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
+    what = fmt::format("not expected: {}", fmt::join(all, " "));
+  }
   return fmt::format("{}; see eigenlight {}--help", what,
                      chosen.empty() ? "" : chosen.front()->get_name() + " ");
 }

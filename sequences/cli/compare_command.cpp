@@ -69,7 +69,10 @@ struct OpenCase {
 class CompareJob {
  public:
   CompareJob(const CompareSettings& settings, const Job& job)
-      : job_(job), markdown_(settings.markdown), plan_(make_compare_plan(settings)) {}
+      : job_(job), markdown_(settings.markdown), plan_(make_compare_plan(settings)) {
+    // A name that is wrong is told before the first scene is measured for hours.
+    for (const CompareCase& one : plan_.cases) check_scene({one.scene, plan_.environment});
+  }
 
   int run() {
     const CellStore store(plan_.directory / "cells", shared_identity(plan_));

@@ -80,6 +80,8 @@ int RenderRun::run() {
       plan_.denoiser,
       {.extent = plan_.render.extent, .bases = plan_.bases, .without = plan_.without});
   directory_ = std::make_unique<RunDirectory>(settings_.directory, to_json_text(description));
+  const std::string foreign = directory_->foreign_frames(plan_.frames);
+  if (!foreign.empty()) job_.say_notes({foreign});
   if (settings_.resume) {
     position_ = directory_->resume(plan_.frames, *denoiser_);
   } else {

@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "frame/bad_file.h"
+#include "frame/check.h"
 #include "frame/named.h"
 #include "render/builtin/builtin_scenes.h"
 #include "render/loading/scene_file.h"
@@ -94,19 +96,40 @@ bool names_a_file(const std::filesystem::path& path) {
   return extension == ".json" || extension == ".gltf" || extension == ".glb" || extension == ".obj";
 }
 
-}  // namespace
-
-Scene open_scene(const SceneRequest& request, std::vector<std::string>& notes) {
+const BuiltinScene* find_builtin(const std::string& name) {
   const auto& built_in = builtin_scenes();
-  const auto found = std::find_if(built_in.begin(), built_in.end(), [&](const BuiltinScene& scene) {
-    return scene.name == request.name;
-  });
-  if (found != built_in.end()) return found->make();
-  std::filesystem::path path = request.name;
+  const auto found = std::find_if(built_in.begin(), built_in.end(),
+                                  [&](const BuiltinScene& scene) { return scene.name == name; });
+  return found == built_in.end() ? nullptr : &*found;
+}
+
+std::filesystem::path file_of(const std::string& name) {
+  std::filesystem::path path = name;
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) path /= "scene.json";
-  if (!names_a_file(path)) fail_unknown(request.name);
-  return load_scene(path, {request.use_environment}, notes);
+  if (!names_a_file(path)) fail_unknown(name);
+  return path;
+}
+
+}  // namespace
+
+void check_scene(const SceneRequest& request) {
+  if (find_builtin(request.name)) {
+    EL_CHECK(!request.use_environment,
+             "--environment: the built-in scene '{}' has no environment map", request.name);
+    return;
+  }
+  const std::filesystem::path path = file_of(request.name);
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) {
+    throw BadFile(fmt::format("{}: no such file", path.string()));
+  }
+}
+
+Scene open_scene(const SceneRequest& request, std::vector<std::string>& notes) {
+  check_scene(request);
+  if (const BuiltinScene* builtin = find_builtin(request.name)) return builtin->make();
+  return load_scene(file_of(request.name), {request.use_environment}, notes);
 }
 
 std::uint64_t scene_hash(const Scene& scene) {

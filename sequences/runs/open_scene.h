@@ -19,6 +19,11 @@ struct SceneRequest {
 /// naming the file if it cannot be read.
 [[nodiscard]] Scene open_scene(const SceneRequest& request, std::vector<std::string>& notes);
 
+/// Throws what open_scene() throws of a name: std::invalid_argument if it is neither a built-in
+/// scene nor a file, or if a built-in one is asked for its environment map; BadFile if there is no
+/// such file. Reads nothing.
+void check_scene(const SceneRequest& request);
+
 /// XXH3-64 of the content of a scene, so that a run is not resumed with another scene.
 [[nodiscard]] std::uint64_t scene_hash(const Scene& scene);
 

@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "sequences/files/atomic_file.h"
 #include "sequences/files/checkpoint.h"
-#include "sequences/files/directory.h"
 #include "sequences/files/file_pattern.h"
+#include "sequences/files/frame_range.h"
+#include "sequences/files/sequence_name.h"
 #include "sequences/runs/run_description.h"
 
 namespace eigenlight {
@@ -19,6 +22,20 @@ constexpr std::string_view kRunFile = "run.json";
 RunDirectory::RunDirectory(std::filesystem::path path, std::string run)
     : path_(std::move(path)), run_(std::move(run)) {
   make_directory(path_);
+  lock_ = std::make_unique<DirectoryLock>(path_);
+}
+
+std::string RunDirectory::foreign_frames(const std::vector<int>& frames) const {
+  const std::filesystem::path file = path_ / kRunFile;
+  std::error_code error;
+  if (std::filesystem::exists(file, error) && read_whole_file(file) == run_) return {};
+  std::vector<int> others;
+  for (const int frame : SequenceName((path_ / kFramePattern).string()).frames()) {
+    if (std::find(frames.begin(), frames.end(), frame) == frames.end()) others.push_back(frame);
+  }
+  if (others.empty()) return {};
+  return fmt::format("{}: holds {} frames of another run beside those of this one: {}",
+                     path_.string(), others.size(), format_frame_range(others));
 }
 
 void RunDirectory::begin() const {

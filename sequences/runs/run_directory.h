@@ -2,9 +2,11 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "sequences/files/directory.h"
 #include "temporal/denoiser.h"
 
 namespace eigenlight {
@@ -13,11 +15,15 @@ namespace eigenlight {
 /// `--resume` starts from.
 class RunDirectory {
  public:
-  /// Makes the directory. `run` is to_json_text() of the run. Throws std::runtime_error naming the
-  /// directory if it cannot be made.
+  /// Makes the directory and locks it. `run` is to_json_text() of the run. Throws
+  /// std::runtime_error naming the directory if it cannot be made, or if another run is writing
+  /// into it.
   RunDirectory(std::filesystem::path path, std::string run);
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+  /// A line on frames of another run, beside `frames` of this one; empty if there are none.
+  [[nodiscard]] std::string foreign_frames(const std::vector<int>& frames) const;
 
   /// Starts a new run: removes the checkpoint of an older run and writes run.json. Frames of an
   /// older run stay until frames of this run overwrite them.
@@ -37,6 +43,7 @@ class RunDirectory {
 
   std::filesystem::path path_;
   std::string run_;
+  std::unique_ptr<DirectoryLock> lock_;
 };
 
 }  // namespace eigenlight

@@ -199,7 +199,7 @@ TEST_F(CliTest, UnknownSceneIsAnError) {
   EXPECT_EQ(unknown.status, 2);
   EXPECT_THAT(unknown.err, HasSubstr("unknown scene 'nowhere'; built-in: cornell, "));
   const Outcome missing = call({"render", dir_ / "scene.json", "-o", dir_ / "never"});
-  EXPECT_EQ(missing.status, 1);
+  EXPECT_EQ(missing.status, 2);
   EXPECT_THAT(missing.err, HasSubstr("scene.json"));
   std::ofstream(dir_ / "scene.json") << "{ not json";
   const Outcome broken = call({"render", dir_ / "scene.json", "-o", dir_ / "never"});

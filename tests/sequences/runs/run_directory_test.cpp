@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <memory>
 
 #include "sequences/files/atomic_file.h"
 #include "sequences/files/checkpoint.h"
@@ -27,14 +28,22 @@ class RunDirectoryTest : public testing::Test {
   }
   std::string refusal(const std::string& run) {
     try {
-      (void)RunDirectory(dir_.path(), run).resume(kFrames, denoiser_);
+      (void)open(run).resume(kFrames, denoiser_);
     } catch (const CheckpointError& error) {
       return error.what();
     }
     return "not refused";
   }
 
+  // A directory is that of one run at a time.
+  const RunDirectory& open(const std::string& run) {
+    run_.reset();
+    run_ = std::make_unique<RunDirectory>(dir_.path(), run);
+    return *run_;
+  }
+
   TempDir dir_;
+  std::unique_ptr<RunDirectory> run_;
   FrameByFrame denoiser_{{{8, 8}, 3}, "noisy"};
 };
 
@@ -51,16 +60,32 @@ TEST_F(RunDirectoryTest, ResumesAfterTheSavedFrame) {
   EXPECT_EQ(run.resume(kFrames, denoiser_), 0u);
 }
 
+TEST_F(RunDirectoryTest, TwoRunsDoNotWriteIntoOneDirectory) {
+  open(kRun);
+  EXPECT_THAT([&] { RunDirectory(dir_.path(), kRun); },
+              ThrowsMessage<std::runtime_error>(HasSubstr("another run is writing into this")));
+  run_.reset();
+  EXPECT_NO_THROW(RunDirectory(dir_.path(), kRun));
+}
+
+TEST_F(RunDirectoryTest, FramesOfAnotherRunAreTold) {
+  for (const int frame : {0, 1, 4, 5, 9}) pretend_frame(frame);
+  EXPECT_THAT(open(kRun).foreign_frames(kFrames),
+              HasSubstr("holds 3 frames of another run beside those of this one: 0-1,9"));
+  run_->begin();  // now they count as its own
+  EXPECT_EQ(run_->foreign_frames(kFrames), "");
+}
+
 TEST_F(RunDirectoryTest, CheckpointOfAnotherRunIsAnError) {
-  const RunDirectory run(dir_.path(), kRun);
-  EXPECT_EQ(run.resume(kFrames, denoiser_), 0u);
+  const auto run = [&]() -> const RunDirectory& { return open(kRun); };
+  EXPECT_EQ(run().resume(kFrames, denoiser_), 0u);
   const std::string other = R"({"scene": "atrium", "spp": 8})";
   EXPECT_THAT(refusal(other), HasSubstr("run.json: of another run: spp is 3 there, 8 here"));
-  run.save(0, denoiser_);
+  run().save(0, denoiser_);
   EXPECT_THAT(refusal(other), HasSubstr("state.bin: of another run: spp is 3 there, 8 here"));
-  run.save(1, denoiser_);
+  run().save(1, denoiser_);
   EXPECT_THAT(refusal(kRun), HasSubstr("frame.0004.exr is missing"));
-  run.save(4, denoiser_);
+  run().save(4, denoiser_);
   EXPECT_THAT(refusal(kRun), HasSubstr("4 frames complete, but the run has 3"));
   std::string bytes = read_whole_file(dir_ / "state.bin");
   bytes.back() = static_cast<char>(bytes.back() ^ 1);
