@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "sequences/exr/exr_rewrite.h"
 #include "sequences/files/atomic_file.h"
@@ -34,6 +35,28 @@ void read_channel(const ExrFile& file, int index) {
   }
 }
 
+// The same file with new pixels in its first channels.
+void rewrite_with_pixels(const ExrFile& file, const std::filesystem::path& out) {
+  std::vector<Plane<float>> planes;
+  std::vector<ExrReplacement> pixels;
+  planes.reserve(4);
+  for (int i = 0; i < static_cast<int>(file.channels().size()) && planes.size() < 4; ++i) {
+    const ExrChannelInfo& channel = file.channels()[static_cast<std::size_t>(i)];
+    const ExrWindow& window = file.parts()[static_cast<std::size_t>(channel.part)].data;
+    if (static_cast<double>(window.width) * window.height > 1e6) continue;
+    if (window.width < 1 || window.height < 1) continue;
+    planes.emplace_back(Extent{window.width, window.height});
+    planes.back().fill(0.5f);
+    pixels.push_back({i, &planes.back()});
+  }
+  try {
+    rewrite_exr(file, out, pixels);
+    FUZZ_CHECK(ExrFile(out).channels().size() == file.channels().size());
+  } catch (const std::runtime_error& error) {
+    check_refusal(error.what(), file.path());
+  }
+}
+
 void check_file(std::string_view bytes) {
   static const TempDir dir;
   write_file_atomically(dir / "in.exr", bytes);
@@ -43,6 +66,7 @@ void check_file(std::string_view bytes) {
     for (int i = 0; i < static_cast<int>(file.channels().size()) && i < 8; ++i) {
       read_channel(file, i);
     }
+    rewrite_with_pixels(file, dir / "new.exr");
     rewrite_exr(file, dir / "out.exr", {});
     // A copy is again a file with the same channels.
     FUZZ_CHECK(ExrFile(dir / "out.exr").channels().size() == file.channels().size());
