@@ -34,8 +34,9 @@ struct NoisyLight {
   bool is_direct = false;
 };
 
-/// Most layers of light that a frame holds.
-inline constexpr int kMaxLights = 6;
+/// Most layers of light that a frame holds. Each has its own history: memory and time grow with
+/// their number.
+inline constexpr int kMaxLights = 32;
 
 /// All that the denoiser reads of a frame. The source fills it; every stage only reads it. Planes
 /// may be views of the source's memory (Plane::view), valid until the next frame is asked for.

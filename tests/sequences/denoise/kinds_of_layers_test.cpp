@@ -131,6 +131,47 @@ TEST_F(KindsOfLayers, AGrayBeautyIsLight) {
   EXPECT_NEAR(after.mean, before.mean, 0.01);
 }
 
+// Nine lights, each with its own noise: all are denoised, and they still add up to the beauty.
+TEST_F(KindsOfLayers, ManyLightsAddUpToTheBeauty) {
+  constexpr int kLights = 9;
+  std::vector<std::string> names{"R", "G", "B"};
+  DenoiseSettings options = settings();
+  for (int light = 0; light < kLights; ++light) {
+    for (const char* c : {"R", "G", "B"}) names.push_back("key" + std::to_string(light) + "." + c);
+    options.layers.map.push_back("light=key" + std::to_string(light));
+  }
+  const auto light_at = [](int frame, int light, int x, int y) {
+    return (0.2f + 0.1f * static_cast<float>(light)) * 2.0f * draw(100 * light + frame, x, y);
+  };
+  for (int frame = 1; frame <= 3; ++frame) {
+    write(frame, names, [&](int x, int y, int c) {
+      if (c >= 3) return light_at(frame, c / 3 - 1, x, y);
+      float sum = 0.0f;
+      for (int light = 0; light < kLights; ++light) sum += light_at(frame, light, x, y);
+      return sum;
+    });
+  }
+  EXPECT_EQ(plan_denoising(options).layers.views.at(0).lights.size(), std::size_t{kLights});
+  run(options);
+  const ExrReader before(in(3)), after(out(3));
+  const Planes<3> beauty = after.read_planes<3>("color");
+  Plane<double> sum(kExtent);
+  for (int light = 0; light < kLights; ++light) {
+    const std::string name = "key" + std::to_string(light);
+    const Planes<3> noisy = before.read_planes<3>(name), clean = after.read_planes<3>(name);
+    EXPECT_LT(spread(clean[0]).deviation, 0.4 * spread(noisy[0]).deviation) << light;
+    EXPECT_NEAR(spread(clean[0]).mean / spread(noisy[0]).mean, 1.0, 0.02) << light;
+    for (int y = 0; y < kExtent.height; ++y) {
+      for (int x = 0; x < kExtent.width; ++x) sum(x, y) += static_cast<double>(clean[0](x, y));
+    }
+  }
+  for (int y = 0; y < kExtent.height; ++y) {
+    for (int x = 0; x < kExtent.width; ++x) {
+      ASSERT_NEAR(static_cast<double>(beauty[0](x, y)), sum(x, y), 1e-4);
+    }
+  }
+}
+
 // A curved surface that a pinhole at rest sees, in the space of the camera.
 TEST_F(KindsOfLayers, PositionsInCameraSpaceTellNoMotion) {
   for (int frame = 1; frame <= 3; ++frame) {
