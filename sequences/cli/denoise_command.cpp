@@ -8,6 +8,7 @@
 
 #include "sequences/cli/job.h"
 #include "sequences/denoise/plan_text.h"
+#include "sequences/files/directory.h"
 
 namespace eigenlight {
 namespace {
@@ -71,6 +72,10 @@ int denoise(const DenoiseCommand& command, const Console& console) {
   if (command.dry_run) {
     job.print_results(to_json(plan), to_text(plan));
     return kSuccess;
+  }
+  // A folder that cannot be made is told before the first frame is denoised.
+  for (const auto& output : plan.frames.front().outputs) {
+    if (output.has_parent_path()) make_directory(output.parent_path());
   }
   job.say(to_text(plan));
   Progress progress = job.progress(0, plan.frames.size());

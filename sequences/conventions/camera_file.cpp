@@ -18,6 +18,8 @@ using Json = nlohmann::json;
 
 // No place and no lens is beyond, and float holds its square.
 constexpr double kLargest = 1e15;
+// Lenses and heights of pictures, in widths: from fisheye to telescope, banners and strips.
+constexpr double kShortest = 1e-3, kLongest = 1e4;
 
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& field,
                        const std::string& what) {
@@ -73,12 +75,23 @@ Camera to_camera(const std::filesystem::path& path, const std::string& frame,
          "expected a perspective projection (rows x, y, z, w; last row 0 0 -1 0)");
   }
   const double height = fx / fy, w = -projection[2][3];
+  const double focal = 0.5 * fx / w;
+  const glm::dvec2 center(0.5 * (1.0 - projection[2][0] / w),
+                          0.5 * height * (1.0 + projection[2][1] / w));
+  // NaN fails as well.
+  if (!(focal >= kShortest && focal <= kLongest && height >= kShortest && height <= kLongest &&
+        std::abs(center.x) <= kLongest && std::abs(center.y) <= kLongest)) {
+    fail(
+        path, fmt::format("frames.{}.projection", frame),
+        fmt::format("a lens of {:.3g} widths, a picture {:.3g} high, the axis at ({:.3g}, {:.3g}); "
+                    "expected lens and height from {} to {}, the axis within {} widths",
+                    focal, height, center.x, center.y, kShortest, kLongest, kLongest));
+  }
   Camera camera;
   camera.eye = glm::vec3(to_world[3]);
   camera.world_to_view = glm::mat3(glm::transpose(glm::dmat3(axes[0], -axes[1], -axes[2])));
-  camera.focal = static_cast<float>(0.5 * fx / w);
-  camera.center = {static_cast<float>(0.5 * (1.0 - projection[2][0] / w)),
-                   static_cast<float>(0.5 * height * (1.0 + projection[2][1] / w))};
+  camera.focal = static_cast<float>(focal);
+  camera.center = glm::vec2(center);
   return camera;
 }
 

@@ -58,6 +58,20 @@ void drop_absent(const std::vector<RawFrame>& frames, ViewPlan& view, LayerPlan&
   view.lights = std::move(kept);
 }
 
+// A guide that is 0 everywhere tells nothing; some renderers leave one so where a filter of another
+// layer is on. Vectors of 0 are those of what stands still.
+void drop_empty_guides(const std::vector<RawFrame>& frames, ViewPlan& view, LayerPlan& plan,
+                       std::vector<std::string>& notes) {
+  for (std::optional<FileLayer>* guide :
+       {&view.albedo, &view.normal, &view.depth, &view.position}) {
+    if (!*guide || !is_constant(frames, **guide, 0.0f)) continue;
+    const std::string name = name_for_people(**guide);
+    notes.push_back(fmt::format("{}: 0 everywhere, so it is not used as a guide", name));
+    set_row(plan, **guide, "copied", "constant 0");
+    guide->reset();
+  }
+}
+
 // All layers of light are 0: the beauty is all there is.
 void denoise_whole(ViewPlan& view, LayerPlan& plan) {
   if (!view.beauty) {
@@ -172,6 +186,7 @@ void refine_plan(const std::vector<RawFrame>& frames, LayerPlan& plan,
                  std::vector<std::string>& notes) {
   for (ViewPlan& view : plan.views) {
     drop_absent(frames, view, plan);
+    drop_empty_guides(frames, view, plan, notes);
     const bool has_light = std::any_of(view.lights.begin(), view.lights.end(),
                                        [](const PlannedLight& light) { return !light.is_alpha; });
     if (!has_light) {

@@ -75,12 +75,12 @@ struct SumCheck {
 /// than any renderer writes, are 2 to 3 % off per pixel, and 0.1 % in the mean.
 inline constexpr double kRoundingAbsolute = 0.04, kRoundingMean = 0.004;
 
-/// Drops layers of light that are 0 in all `frames`, and an alpha that is 0 or 1 in all, and looks
-/// whether each sum is the sum of its parts. A beauty that has more than they explain gets one more
-/// layer of light, all that is left, if there is room; one that has less than its parts cannot be
-/// composed of them: it is denoised as a layer of its own, and so is a beauty whose layers of light
-/// are all 0. Throws BadFile if there is nothing left to denoise. Rows of the table are brought up
-/// to date, and lines for people added to `notes`.
+/// Drops layers of light and guides that are 0 in all `frames`, and an alpha that is 0 or 1 in all,
+/// and looks whether each sum is the sum of its parts. A beauty that has more than they explain
+/// gets one more layer of light, all that is left, if there is room; one that has less than its
+/// parts cannot be composed of them: it is denoised as a layer of its own, and so is a beauty whose
+/// layers of light are all 0. Throws BadFile if there is nothing left to denoise. Rows of the table
+/// are brought up to date, and lines for people added to `notes`.
 void refine_plan(const std::vector<RawFrame>& frames, LayerPlan& plan,
                  std::vector<std::string>& notes);
 

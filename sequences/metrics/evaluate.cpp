@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "frame/bad_file.h"
 #include "sequences/files/frame_range.h"
 #include "sequences/files/ldr_image.h"
 #include "sequences/files/sequence_name.h"
@@ -66,9 +67,7 @@ std::vector<int> frames_of(const EvaluateOptions& options, const std::vector<Seq
     if (sequence.name.is_single()) found.insert(0);
     for (const int frame : sequence.name.frames()) found.insert(frame);
   }
-  if (found.empty()) {
-    throw std::runtime_error(fmt::format("{}: no such files", options.test));
-  }
+  if (found.empty()) throw BadFile(fmt::format("{}: no such files", options.test));
   return {found.begin(), found.end()};
 }
 
@@ -80,7 +79,9 @@ std::map<int, std::string> missing_files(const std::vector<int>& frames,
     for (const Sequence& sequence : sequences) {
       std::error_code error;
       if (fs::exists(sequence.name.path(frame), error)) continue;
-      missing.emplace(frame, fmt::format("{}: no such file", sequence.name.path(frame).string()));
+      const std::string line = fmt::format("{}: no such file", sequence.name.path(frame).string());
+      if (sequence.name.is_single()) throw BadFile(line);
+      missing.emplace(frame, line);
     }
   }
   return missing;
@@ -167,7 +168,7 @@ class Evaluator {
   void measure(int frame, const FramePaths& paths) {
     LoadedFrame loaded = load_frame(frame, paths, options_);
     if (!loaded.bad.empty()) {
-      if (!options_.skips_bad) throw std::runtime_error(loaded.bad);
+      if (!options_.skips_bad) throw BadFile(loaded.bad);
       result_.bad_pixels += loaded.bad_pixels;
     }
     if (!result_.step && result_.frames.empty()) result_.step = loaded.step;

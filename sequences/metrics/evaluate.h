@@ -62,7 +62,8 @@ struct Evaluation {
 /// Bad: a missing or unreadable file, a missing layer, images of different size, pixels with NaN or
 /// Inf. Throws std::runtime_error with one line that names the file of the first bad frame and
 /// counts the others that are missing, unless skips_bad; also if no frame is left, or if no light
-/// step is seen where options.step says. Throws std::invalid_argument on options that do not fit
+/// step is seen where options.step says. It is a BadFile unless the file may come later or become
+/// whole. Throws std::invalid_argument on options that do not fit
 /// together.
 [[nodiscard]] Evaluation evaluate(const EvaluateOptions& options);
 

@@ -68,8 +68,8 @@ Source open_source(const std::filesystem::path& path, const std::string& layer,
 void check_size(const Source& test, const Source& other) {
   const Extent a = test.colors[0].extent(), b = other.colors[0].extent();
   if (a == b) return;
-  throw std::runtime_error(fmt::format("{} is {}x{}, but {} is {}x{}", test.path, a.width, a.height,
-                                       other.path, b.width, b.height));
+  throw BadFile(fmt::format("{} is {}x{}, but {} is {}x{}", test.path, a.width, a.height,
+                            other.path, b.width, b.height));
 }
 
 // Sets a bit of each pixel where `test` holds.

@@ -100,5 +100,17 @@ TEST_F(CameraFileTest, SaysThatAFileCannotBeRead) {
   EXPECT_THROW(CameraFile(directory_.path() / "none.json"), std::runtime_error);
 }
 
+// Numbers that float, or any picture, cannot hold.
+TEST_F(CameraFileTest, LensesThatNoCameraHasAreRefused) {
+  for (const char* lens : {"[[1e15,0,0,0],[0,1e15,0,0],[0,0,-1,0],[0,0,-1e-30,0]]",
+                           "[[1.5,0,1e15,0],[0,3,0,0],[0,0,-1,-0.1],[0,0,-1,0]]",
+                           "[[1e-300,0,0,0],[0,1e-300,0,0],[0,0,-1,0],[0,0,-1,0]]",
+                           "[[1.5,0,0,0],[0,1e-9,0,0],[0,0,-1,-0.1],[0,0,-1,0]]"}) {
+    const std::string error =
+        error_of(replaced("[[1.5,0,0.2,0],[0,3,0,0],[0,0,-1,-0.1],[0,0,-1,0]]", lens));
+    EXPECT_THAT(error, HasSubstr("frames.3.projection: a lens of ")) << lens;
+  }
+}
+
 }  // namespace
 }  // namespace eigenlight

@@ -131,6 +131,19 @@ TEST_F(KindsOfLayers, AGrayBeautyIsLight) {
   EXPECT_NEAR(after.mean, before.mean, 0.01);
 }
 
+// As Arnold leaves N_denoise empty once cryptomatte is on (arnold-usd#2167).
+TEST_F(KindsOfLayers, GuidesThatAreZeroEverywhereAreAbsent) {
+  for (int frame = 1; frame <= 2; ++frame) {
+    write(frame, {"R", "G", "B", "N.X", "N.Y", "N.Z", "Z", "motion.X", "motion.Y"},
+          [&](int x, int y, int c) { return c < 3 ? draw(frame, x, y) : 0.0f; });
+  }
+  const DenoisePlan plan = plan_denoising(settings());
+  EXPECT_FALSE(plan.layers.views.at(0).normal || plan.layers.views[0].depth);
+  EXPECT_TRUE(plan.layers.views[0].motion.has_value());  // nothing moves
+  EXPECT_THAT(plan.notes, Contains("N: 0 everywhere, so it is not used as a guide"));
+  EXPECT_THAT(plan.warnings, Contains(HasSubstr("normal: none")));
+}
+
 // Nine lights, each with its own noise: all are denoised, and they still add up to the beauty.
 TEST_F(KindsOfLayers, ManyLightsAddUpToTheBeauty) {
   constexpr int kLights = 9;
