@@ -136,9 +136,10 @@ std::string other_primaries(const std::vector<FrameHeaders>& headers) {
   }
   if (!other) return {};
   return fmt::format(
-      "chromaticities: {} files have other primaries than {}, the first of them {}; numbers are "
+      "chromaticities: {} of {} files have other primaries than {}, the first of them {}; numbers "
+      "are "
       "taken as they are, and each file keeps its own",
-      count, first.path.string(), other->path.string());
+      count, headers.size() * headers.front().size(), first.path.string(), other->path.string());
 }
 
 }  // namespace eigenlight

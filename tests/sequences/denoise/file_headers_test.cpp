@@ -58,7 +58,7 @@ TEST(FileHeaders, OtherPrimariesAreOneLine) {
   EXPECT_EQ(other_primaries(headers), "");
   headers[2][0].chromaticities = headers[3][0].chromaticities = acescg;
   EXPECT_THAT(other_primaries(headers),
-              HasSubstr("2 files have other primaries than a.exr, the first of them c.exr"));
+              HasSubstr("2 of 4 files have other primaries than a.exr, the first of them c.exr"));
 }
 
 }  // namespace
