@@ -1,7 +1,6 @@
 #include "sequences/cli/compare_command.h"
 
 #include <fmt/format.h>
-#include <xxhash.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -10,17 +9,14 @@
 #include <stdexcept>
 
 #include "sequences/cli/compare_options.h"
+#include "sequences/cli/compare_output.h"
 #include "sequences/cli/compare_paper.h"
-#include "sequences/cli/markdown_option.h"
+#include "sequences/cli/compare_recorded.h"
 #include "sequences/compare/antialias_run.h"
-#include "sequences/compare/compare_crops.h"
-#include "sequences/compare/compare_markdown.h"
-#include "sequences/compare/compare_page.h"
 #include "sequences/compare/compare_pictures.h"
 #include "sequences/compare/compare_run.h"
-#include "sequences/files/atomic_file.h"
+#include "sequences/compare/recorded_plan.h"
 #include "sequences/files/file_pattern.h"
-#include "sequences/files/ldr_image.h"
 #include "sequences/runs/open_scene.h"
 
 namespace eigenlight {
@@ -28,14 +24,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-
-constexpr int kCropQuality = 88;
-
-// Another build may measure other numbers.
-std::string program_hash() {
-  const std::string program = read_whole_file("/proc/self/exe");
-  return fmt::format("{:016x}", XXH3_64bits(program.data(), program.size()));
-}
 
 Json shared_identity(const ComparePlan& plan) {
   return {{"program", program_hash()}, {"width", plan.extent.width}, {"height", plan.extent.height},
@@ -86,13 +74,13 @@ class CompareJob {
       for (const int spp : plan_.spp) {
         if (!measure({one, open, references, spp}, store, of_case)) return stopped();
       }
-      const ComparePictures pictures{plan_, references, plan_.directory / "frames" / one.name,
-                                     open.scene.exposure};
+      const ComparePictures pictures = scene_pictures(
+          plan_, references, plan_.directory / "frames" / one.name, open.scene.exposure);
       galleries.push_back(compare_gallery(pictures));
-      if (plan_.crop) write_crops(one, pictures);
+      write_crops(pictures, one.name, job_);
       results.push_back(std::move(of_case));
     }
-    write(results, std::move(galleries));
+    write_comparison(plan_, results, std::move(galleries), markdown_, job_);
     return kSuccess;
   }
 
@@ -117,8 +105,6 @@ class CompareJob {
   [[nodiscard]] bool measure(const Task& task, const CellStore& store, CaseResults& results) const;
   [[nodiscard]] bool measure_missing(const Task& task, const std::vector<const Contender*>& missing,
                                      const CellStore& store) const;
-  void write_crops(const CompareCase& one, const ComparePictures& pictures) const;
-  void write(const std::vector<CaseResults>& results, std::vector<PageGallery> galleries) const;
   [[nodiscard]] int stopped() const {
     job_.say(
         fmt::format("stopped; what is complete is kept; to go on:\n  {}", job_.command_line()));
@@ -213,27 +199,6 @@ bool CompareJob::measure_missing(const Task& task, const std::vector<const Conte
   return true;
 }
 
-void CompareJob::write_crops(const CompareCase& one, const ComparePictures& pictures) const {
-  const fs::path path = plan_.directory / fmt::format("crops-{}.jpg", one.name);
-  const std::vector<unsigned char> jpeg = encode_jpeg(crop_rows(pictures), kCropQuality);
-  write_file_atomically(path, {reinterpret_cast<const char*>(jpeg.data()), jpeg.size()});
-  job_.say(fmt::format("{}: {}", path.string(), crop_names(plan_)));
-}
-
-void CompareJob::write(const std::vector<CaseResults>& results,
-                       std::vector<PageGallery> galleries) const {
-  const std::string json = to_json(plan_, results).dump(1) + "\n";
-  write_file_atomically(plan_.directory / "results.json", json);
-  write_file_atomically(plan_.directory / "results.csv", to_csv(results));
-  write_file_atomically(plan_.directory / "index.html",
-                        to_html(compare_page(plan_, results, std::move(galleries))));
-  const std::string markdown = to_markdown(plan_, results);
-  write_markdown(markdown_, markdown);
-  const std::string table =
-      fmt::format("{}\n{}\n", to_table(plan_, results), (plan_.directory / "index.html").string());
-  job_.print_results(json, is_printed(markdown_) ? markdown : table);
-}
-
 }  // namespace
 
 Command add_compare_command(CLI::App& app) {
@@ -244,8 +209,9 @@ Command add_compare_command(CLI::App& app) {
   return {parser, [options](const Console& console) {
             const CompareSettings& settings = options->settings;
             const Job job(options->job, console);
-            return settings.paper.empty() ? CompareJob(settings, job).run()
-                                          : compare_paper(settings, job);
+            if (!settings.paper.empty()) return compare_paper(settings, job);
+            return is_recorded(settings) ? compare_recorded(settings, job)
+                                         : CompareJob(settings, job).run();
           }};
 }
 

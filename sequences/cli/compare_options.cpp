@@ -1,19 +1,27 @@
 #include "sequences/cli/compare_options.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <array>
 #include <set>
 #include <string>
 
+#include "sequences/cli/layer_options.h"
 #include "sequences/cli/markdown_option.h"
+#include "sequences/compare/recorded_plan.h"
 #include "sequences/lab/paper.h"
 
 namespace eigenlight {
 namespace {
 
+constexpr int kAllBefore = 20'000'000;  // more frames than numbers of frames can differ by
+
 void add_what(CLI::App& command, CompareSettings& settings) {
   command.add_option("scenes", settings.scenes,
                      "Built-in names, scene.json, .gltf, .glb or .obj; SCENE:PERTURB with commas "
-                     "names what moves in that scene");
+                     "names what moves in that scene; or EXR patterns, shot.####.exr: the files of "
+                     "one recorded shot");
   command.add_option("-o,--output", settings.directory, "Directory for results and page")
       ->required();
   command.add_option("--methods", settings.methods, "With commas [all of `eigenlight methods`]");
@@ -65,6 +73,35 @@ void add_how(CLI::App& command, CompareSettings& settings) {
   add_markdown_option(command, settings.markdown);
 }
 
+// Of recorded frames.
+void add_recorded(CLI::App& command, CompareSettings& settings) {
+  command.add_option("--reference", settings.reference,
+                     "Recorded frames: reference, shot.ref.####.exr; with :NAME the layers NAME.*");
+  command.add_option("--reference-b", settings.reference_b,
+                     "Recorded frames: second, independent reference");
+  command.add_option("--layer", settings.layer, "Recorded frames: layer to measure [beauty]");
+  add_layer_options(command, settings.layers, settings.guides, settings.cuts);
+}
+
+constexpr std::array kOfRecorded{"--reference", "--reference-b", "--layer",  "--map", "--keep",
+                                 "--skip",      "--motion",      "--camera", "--cuts"};
+constexpr std::array kOfScenes{"--perturb", "--aa",      "--spp",           "--environment",
+                               "--size",    "--seed",    "--reference-spp", "--cache",
+                               "--bases",   "--bounces", "--equal-time",    "--ablate"};
+
+// Scenes are rendered, recorded frames are read.
+void check_kind(const CLI::App& command, bool is_recorded) {
+  for (const char* option : kOfScenes) {
+    if (!is_recorded || command.get_option(option)->count() == 0) continue;
+    throw CLI::ValidationError(fmt::format("{} is for scenes, not for recorded frames", option));
+  }
+  for (const char* option : kOfRecorded) {
+    if (is_recorded || command.get_option(option)->count() == 0) continue;
+    throw CLI::ValidationError(
+        fmt::format("{} is for recorded frames, such as shot.####.exr", option));
+  }
+}
+
 // Papers come with scenes, methods and sample counts of their own.
 void add_paper(CLI::App& command, CompareSettings& settings) {
   CLI::Option* paper =
@@ -97,6 +134,11 @@ void set_defaults(const CLI::App& command, CompareSettings& settings) {
     return;
   }
   if (settings.scenes.empty()) throw CLI::RequiredError("scenes or --paper");
+  check_kind(command, is_recorded(settings));
+  if (is_recorded(settings)) {
+    if (!is_given("--frames")) settings.frames.clear();
+    if (!is_given("--warmup")) settings.warmup = kAllBefore;
+  }
   if (settings.antialias.empty()) return;
   if (!is_given("--spp")) settings.spp = "24";
   if (!is_given("--frames")) settings.frames = "20";
@@ -109,6 +151,7 @@ void set_defaults(const CLI::App& command, CompareSettings& settings) {
 void add_compare_options(CLI::App& command, CompareOptions& options) {
   add_what(command, options.settings);
   add_how(command, options.settings);
+  add_recorded(command, options.settings);
   add_job_options(command, options.job, "Print results.json instead of the table");
   add_paper(command, options.settings);
   add_antialias(command);

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "sequences/cli/job.h"
+#include "sequences/cli/layer_options.h"
 #include "sequences/denoise/plan_text.h"
 #include "sequences/files/directory.h"
 
@@ -37,33 +38,6 @@ void add_file_options(CLI::App& command, DenoiseCommand& options) {
   command.add_flag("--resume", options.settings.resume, "Go on where an interrupted run stopped");
   command.add_flag("--dry-run", options.dry_run,
                    "Print what would be done with each layer, and stop");
-}
-
-void add_layer_options(CLI::App& command, DenoiseSettings& settings) {
-  command
-      .add_option("--map", settings.layers.map,
-                  "ROLE=LAYER: what a layer is. Roles: beauty, light, albedo, normal, depth, "
-                  "position, motion, id. Several light=LAYER name all layers that are denoised")
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->allow_extra_args(false);
-  command.add_option("--keep", settings.layers.keep,
-                     "Regular expression: layers of light to copy as they are");
-  command.add_option("--skip", settings.layers.skip,
-                     "Regular expression: layers not to look at, only to copy");
-  command
-      .add_option_function<std::string>(
-          "--alpha",
-          [&settings](const std::string& word) {
-            settings.layers.denoises_alpha = word == "denoise";
-          },
-          "keep: copy the alpha of the beauty; denoise: filter it like light [keep]")
-      ->check(CLI::IsMember({"keep", "denoise"}));
-  command.add_option("--motion", settings.guides.motion,
-                     "What motion vectors mean: cycles, arnold, renderman, vray, optix, none, or "
-                     "words such as x,-y,pixels,backward,first [found out]");
-  command.add_option("--camera", settings.guides.camera,
-                     "File with a camera for each frame [NAME.camera.json beside the input]");
-  command.add_option("--cuts", settings.cuts, "Frames at which a new shot begins, such as 101,240");
 }
 
 int denoise(const DenoiseCommand& command, const Console& console) {
@@ -99,7 +73,8 @@ Command add_denoise_command(CLI::App& app) {
                          "clean light");
   const auto command = std::make_shared<DenoiseCommand>();
   add_file_options(*parser, *command);
-  add_layer_options(*parser, command->settings);
+  DenoiseSettings& settings = command->settings;
+  add_layer_options(*parser, settings.layers, settings.guides, settings.cuts);
   add_job_options(*parser, command->job, "Print the plan or the summary as JSON");
   return {parser, [command](const Console& console) { return denoise(*command, console); }};
 }

@@ -21,7 +21,9 @@ Json to_json(const Cell& cell) {
       {"contender", cell.contender},
       {"spp", cell.spp},
       {"cpu_ms",
-       {{"render", cell.render_ms}, {"denoise", cell.denoise_ms}, {"total", cell.total_ms()}}},
+       {{cell.spp == 0 ? "files" : "render", cell.spp == 0 ? cell.files_ms : cell.render_ms},
+        {"denoise", cell.denoise_ms},
+        {"total", cell.total_ms()}}},
       {"extra_spp", cell.extra_spp},
       {"memory_mb", cell.memory_mb},
       {"bad_pixels", cell.bad_pixels}};
@@ -40,7 +42,9 @@ Cell cell_from_json(const Json& json) {
   Cell cell;
   cell.contender = json.at("contender").get<std::string>();
   cell.spp = json.at("spp").get<int>();
-  cell.render_ms = json.at("cpu_ms").at("render").get<double>();
+  const bool is_recorded = cell.spp == 0;
+  (is_recorded ? cell.files_ms : cell.render_ms) =
+      json.at("cpu_ms").at(is_recorded ? "files" : "render").get<double>();
   cell.denoise_ms = json.at("cpu_ms").at("denoise").get<double>();
   cell.extra_spp = json.at("extra_spp").get<double>();
   cell.memory_mb = json.at("memory_mb").get<double>();

@@ -20,19 +20,20 @@ struct AntialiasCost {
 };
 
 struct Cell {
-  std::string contender;  ///< its label
-  int spp = 0;
+  std::string contender;             ///< its label
+  int spp = 0;                       ///< 0: of recorded frames
   std::vector<FrameFigures> frames;  ///< the measured ones
   /// CPU milliseconds a frame, means over the measured frames: rendering, with the extra samples
   /// that the method asked for, and the method itself.
   double render_ms = 0.0, denoise_ms = 0.0;
+  double files_ms = 0.0;  ///< the same for reading, converting and writing recorded frames
   std::optional<AntialiasCost> antialias;  ///< of ways of antialiasing
   double extra_spp = 0.0;                  ///< extra samples per surface pixel, mean
   double memory_mb = 0.0;                  ///< 10^6 bytes; of what: kMemoryNote
   std::int64_t bad_pixels = 0;             ///< of the method, with NaN or Inf: excluded
 
   [[nodiscard]] double total_ms() const {
-    return render_ms + denoise_ms + (antialias ? antialias->ms : 0.0);
+    return render_ms + files_ms + denoise_ms + (antialias ? antialias->ms : 0.0);
   }
   [[nodiscard]] SetFigures mean() const { return mean_figures(frames); }
 };
@@ -42,9 +43,9 @@ inline constexpr const char* kMemoryNote =
     "frame "
     "included; programs: largest resident set";
 
-/// `contender`, `spp`, `cpu_ms` {render, denoise, total}, `antialias` {cpu_ms, reference_cpu_ms,
-/// unmatched} where there is one, `extra_spp`, `memory_mb`, `bad_pixels`, the means of
-/// to_json(SetFigures), and `per_frame`.
+/// `contender`, `spp`, `cpu_ms` {render, denoise, total} (of recorded frames `files` for `render`),
+/// `antialias` {cpu_ms, reference_cpu_ms, unmatched} where there is one, `extra_spp`, `memory_mb`,
+/// `bad_pixels`, the means of to_json(SetFigures), and `per_frame`.
 [[nodiscard]] nlohmann::ordered_json to_json(const Cell& cell);
 /// Throws nlohmann::json::exception on anything that to_json(Cell) did not write.
 [[nodiscard]] Cell cell_from_json(const nlohmann::ordered_json& json);

@@ -28,22 +28,33 @@ Figures surface(const Cell& cell) {
   return cell.mean()[static_cast<std::size_t>(PixelSet::kSurface)];
 }
 
-std::string intro(const ComparePlan& plan) {
-  std::string text = fmt::format(
-      "{}x{}, frames {} after {} of history, two independent references of {} samples each, whose "
-      "noise drops out. ",
+std::string intro_of_recorded(const ComparePlan& plan) {
+  return fmt::format(
+      "{}x{}, frames {} of {}, {}. Measured: {}, all pixels. Times are CPU milliseconds a frame: "
+      "files are read, converted and written; denoising is all the rest, of programs what they "
+      "take or print. ",
       plan.extent.width, plan.extent.height, format_frame_range(plan.measured),
-      plan.frames.size() - plan.measured.size(), plan.reference_spp);
+      format_frame_range(plan.frames), plan.reference_text(), plan.measured_light());
+}
+
+std::string intro_of_scenes(const ComparePlan& plan) {
+  std::string text = fmt::format("{}x{}, frames {} after {} of history, {}. ", plan.extent.width,
+                                 plan.extent.height, format_frame_range(plan.measured),
+                                 plan.frames.size() - plan.measured.size(), plan.reference_text());
   if (plan.is_antialiasing()) {
-    text += fmt::format(
-        "Composed pictures of {} samples, not denoised, against {} with the samples of a reference "
-        "spread over its places; the noise of two such pictures drops out too, so that aliasing is "
-        "left. Times are CPU milliseconds of a frame of {} samples, denoised by the default "
-        "method. ",
-        plan.spp.front(), format_antialias(kAntialiasReference), RenderOptions{}.spp);
-  } else {
-    text += "Albedo times indirect light, pixels with a surface; times are CPU milliseconds. ";
+    return text +
+           fmt::format(
+               "Composed pictures of {} samples, not denoised, against {} with the samples of a "
+               "reference spread over its places; the noise of two such pictures drops out too, so "
+               "that aliasing is left. Times are CPU milliseconds of a frame of {} samples, "
+               "denoised by the default method. ",
+               plan.spp.front(), format_antialias(kAntialiasReference), RenderOptions{}.spp);
   }
+  return text + "Albedo times indirect light, pixels with a surface; times are CPU milliseconds. ";
+}
+
+std::string intro(const ComparePlan& plan) {
+  std::string text = plan.recorded ? intro_of_recorded(plan) : intro_of_scenes(plan);
   text +=
       "relMSE = mean((x - r)^2 / (r^2 + 0.01)), temporal error = mean((e_t - e_(t-1))^2), e = x "
       "- r; energy = mean(x) / mean(r). ";
@@ -54,13 +65,18 @@ std::string intro(const ComparePlan& plan) {
 }
 
 Row cost_head(const ComparePlan& plan) {
+  if (plan.recorded) return {"files ms", "denoise ms"};
   if (!plan.is_antialiasing()) return {"extra spp", "render ms", "denoise ms"};
   const std::string name = format_antialias(kAntialiasReference);
   return {"antialias ms", "rest of the frame ms", name + " / antialias", name + " / frame",
           "unmatched"};
 }
 
-Row cost_cells(const Cell& cell) {
+// Of recorded frames: what is copied takes no time, and files are in the time of programs.
+std::string time_cell(double ms) { return ms > 0.0 ? number(ms, "{:.4g}") : "-"; }
+
+Row cost_cells(const ComparePlan& plan, const Cell& cell) {
+  if (plan.recorded) return {time_cell(cell.files_ms), time_cell(cell.denoise_ms)};
   if (!cell.antialias) {
     return {number(cell.extra_spp), number(cell.render_ms, "{:.4g}"), number(cell.denoise_ms)};
   }
@@ -86,18 +102,22 @@ Row cell_row(const ComparePlan& plan, const CaseResults& scene, const Cell& cell
   const Figures figures = surface(cell);
   std::optional<Figures> base;
   if (plan.baseline()) base = surface(*scene.find(plan.baseline()->label, cell.spp));
-  Row row{scene.scene.name, fmt::format("{}", cell.spp), code(cell.contender)};
+  Row row{scene.scene.name};
+  if (!plan.recorded) row.push_back(fmt::format("{}", cell.spp));
+  row.push_back(code(cell.contender));
   append(figure_cells(figures, base, Metric::kRelmse), row);
   row.push_back(number(figures.energy(), "{:.4f}"));
   append(figure_cells(figures, base, Metric::kTemporalError), row);
   row.push_back(number(figures[Metric::kMse]));
-  append(cost_cells(cell), row);
+  append(cost_cells(plan, cell), row);
   return row;
 }
 
 std::string all_cells(const ComparePlan& plan, const std::vector<CaseResults>& results) {
   const Row per = plan.baseline() ? Row{fmt::format("/ {}", plan.baseline()->label)} : Row();
-  Row head{"scene", "spp", plan.is_antialiasing() ? "antialiasing" : "method", "relMSE"};
+  Row head{plan.recorded ? "shot" : "scene"};
+  if (!plan.recorded) head.push_back("spp");
+  append({plan.is_antialiasing() ? "antialiasing" : "method", "relMSE"}, head);
   append(per, head);
   append({"energy", "temporal error"}, head);
   append(per, head);
@@ -107,12 +127,12 @@ std::string all_cells(const ComparePlan& plan, const std::vector<CaseResults>& r
   for (const CaseResults& scene : results) {
     for (const Cell& cell : scene.cells) rows.push_back(cell_row(plan, scene, cell));
   }
-  return markdown_table(head, rows, 3);
+  return markdown_table(head, rows, plan.recorded ? 2 : 3);
 }
 
 std::string energies(const ComparePlan& plan, const std::vector<CaseResults>& results) {
   if (results.size() < 2) return "";
-  Row head{fmt::format("energy, {} spp", plan.shown_spp())};
+  Row head{fmt::format("energy, {}", plan.shown_text())};
   for (const CaseResults& scene : results) head.push_back(scene.scene.name);
   std::vector<Row> rows;
   for (const Contender& contender : plan.contenders) {
@@ -179,8 +199,8 @@ std::string parts(const ComparePlan& plan, const CaseResults& scene) {
   }
   if (rows.empty()) return "";
   return fmt::format(
-             "\nWhat each part is worth, {}, {} spp; in parentheses multiples of the whole.\n\n",
-             scene.scene.name, plan.shown_spp()) +
+             "\nWhat each part is worth, {}, {}; in parentheses multiples of the whole.\n\n",
+             scene.scene.name, plan.shown_text()) +
          markdown_table({"", "relMSE", "energy", "temporal error", "denoise ms", "total ms"}, rows);
 }
 

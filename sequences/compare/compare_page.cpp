@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <functional>
 #include <utility>
 
 #include "frame/check.h"
@@ -24,7 +25,9 @@ std::optional<double> figure(const Cell& cell, PixelSet set, Metric metric) {
 PagePlot error_against_time(const ComparePlan& plan, const CaseResults& results) {
   PagePlot plot{"Error against time",
                 "A ring marks a point if no other point is both faster and better.",
-                {"CPU time of rendering and denoising, ms a frame", true},
+                {plan.recorded ? "CPU time of files and denoising, ms a frame"
+                               : "CPU time of rendering and denoising, ms a frame",
+                 true},
                 {"relMSE", true},
                 {}};
   std::vector<CurvePoint> all;
@@ -35,7 +38,8 @@ PagePlot error_against_time(const ComparePlan& plan, const CaseResults& results)
       // The axes are logarithmic: other points are not drawn, so they cannot be on the front.
       if (!relmse || *relmse <= 0.0) continue;
       all.push_back({cell->total_ms(), *relmse});
-      series.points.push_back({cell->total_ms(), *relmse, fmt::format("{} spp", cell->spp)});
+      series.points.push_back({cell->total_ms(), *relmse,
+                               plan.recorded ? contender.label : fmt::format("{} spp", cell->spp)});
     }
     plot.series.push_back(std::move(series));
   }
@@ -50,7 +54,7 @@ PagePlot error_against_time(const ComparePlan& plan, const CaseResults& results)
 PagePlot over_frames(const ComparePlan& plan, const CaseResults& results, Metric metric) {
   const bool is_relmse = metric == Metric::kRelmse;
   PagePlot plot{is_relmse ? "Error over the frames" : "Temporal error over the frames",
-                fmt::format("{} spp", plan.shown_spp()),
+                plan.shown_text(),
                 {"frame"},
                 {is_relmse ? "relMSE" : "mean squared change of error", true},
                 {}};
@@ -67,45 +71,83 @@ PagePlot over_frames(const ComparePlan& plan, const CaseResults& results, Metric
   return plot;
 }
 
-PageTable empty_figures_table(const ComparePlan& plan, double equal_ms) {
+// A column of the table of figures.
+struct FiguresColumn {
+  TableColumn head;
+  std::function<TableCell(const Cell&)> value;
+};
+
+FiguresColumn error_column(const char* title, Metric metric, TableColumn::Best best,
+                           PixelSet set = PixelSet::kSurface) {
+  return {{title, best}, [=](const Cell& cell) { return cell_of(figure(cell, set, metric)); }};
+}
+
+std::vector<FiguresColumn> columns_of(const ComparePlan& plan, const EqualTime& equal) {
   using Best = TableColumn::Best;
-  return {fmt::format("{} spp, means over frames {}", plan.shown_spp(),
-                      format_frame_range(plan.measured)),
-          fmt::format("The best value of a column is bold. Energy is the mean of the output over "
-                      "the mean of the reference. Young pixels have fewer than {} frames "
-                      "of history. Times are CPU times a frame; the time of rendering includes the "
-                      "extra samples that a method asks for. The error at equal time is "
-                      "interpolated between measured points and never extrapolated. Memory: {}.",
-                      kYoungAge, kMemoryNote),
-          "method",
-          {{"relMSE", Best::kLowest},
-           {"energy"},
-           {"temporal error", Best::kLowest},
-           {"PSNR, dB", Best::kHighest},
-           {"SSIM", Best::kHighest},
-           {"relMSE, young", Best::kLowest},
-           {"relMSE, old", Best::kLowest},
-           {"render, ms", Best::kLowest},
-           {plan.is_antialiasing() ? "antialias, ms" : "denoise, ms", Best::kLowest},
-           {"extra spp"},
-           {"memory, MB"},
-           {fmt::format("relMSE at {:.4g} ms", equal_ms), Best::kLowest}},
-          {}};
+  std::vector<FiguresColumn> columns{
+      error_column("relMSE", Metric::kRelmse, Best::kLowest),
+      {{"energy"}, [](const Cell& cell) { return cell_of(cell.mean()[0].energy()); }},
+      error_column("temporal error", Metric::kTemporalError, Best::kLowest),
+      error_column("PSNR, dB", Metric::kPsnr, Best::kHighest),
+      error_column("SSIM", Metric::kSsim, Best::kHighest)};
+  const auto add = [&](std::string title, Best best, auto value) {
+    columns.push_back({{std::move(title), best}, std::move(value)});
+  };
+  const auto render = [](const Cell& cell) { return TableCell(cell.render_ms); };
+  const auto method = [](const Cell& cell) {
+    return TableCell(cell.antialias ? cell.antialias->ms : cell.denoise_ms);
+  };
+  if (plan.recorded) {
+    // What is copied takes no time, and files are in the time of programs.
+    const auto cell_of_time = [](double ms) { return ms > 0.0 ? TableCell(ms) : TableCell(); };
+    add("files, ms", Best::kNone, [=](const Cell& cell) { return cell_of_time(cell.files_ms); });
+    add("denoise, ms", Best::kLowest,
+        [=](const Cell& cell) { return cell_of_time(cell.denoise_ms); });
+    return columns;
+  }
+  columns.push_back(
+      error_column("relMSE, young", Metric::kRelmse, Best::kLowest, PixelSet::kYoung));
+  columns.push_back(error_column("relMSE, old", Metric::kRelmse, Best::kLowest, PixelSet::kOld));
+  add("render, ms", Best::kLowest, render);
+  add(plan.is_antialiasing() ? "antialias, ms" : "denoise, ms", Best::kLowest, method);
+  add("extra spp", Best::kNone, [](const Cell& cell) { return TableCell(cell.extra_spp); });
+  add("memory, MB", Best::kNone, [](const Cell& cell) { return TableCell(cell.memory_mb); });
+  add(fmt::format("relMSE at {:.4g} ms", equal.ms), Best::kLowest,
+      [equal](const Cell& cell) { return cell_of(equal.relmse.at(cell.contender)); });
+  return columns;
+}
+
+std::string figures_note(const ComparePlan& plan) {
+  const std::string note =
+      "The best value of a column is bold. Energy is the mean of the output over the mean of the "
+      "reference. ";
+  if (plan.recorded) {
+    return note +
+           "Times are CPU times a frame. Files are read, converted and written; denoising is all "
+           "the rest of the run, of programs what they take or print.";
+  }
+  return note + fmt::format(
+                    "Young pixels have fewer than {} frames of history. Times are CPU times a "
+                    "frame; the time of rendering includes the extra samples that a method asks "
+                    "for. The error at equal time is interpolated between measured points and "
+                    "never extrapolated. Memory: {}.",
+                    kYoungAge, kMemoryNote);
 }
 
 PageTable figures_table(const ComparePlan& plan, const CaseResults& results) {
-  const EqualTime equal = equal_time(plan, results);
-  PageTable table = empty_figures_table(plan, equal.ms);
+  const std::vector<FiguresColumn> columns = columns_of(plan, equal_time(plan, results));
+  PageTable table{(plan.recorded ? "Means over frames " : plan.shown_text(", means over frames ")) +
+                      format_frame_range(plan.measured),
+                  figures_note(plan),
+                  "method",
+                  {},
+                  {}};
+  for (const FiguresColumn& column : columns) table.columns.push_back(column.head);
   for (const Contender& contender : plan.contenders) {
     const Cell& cell = *results.find(contender.label, plan.shown_spp());
-    const auto all = [&](Metric m) { return cell_of(figure(cell, PixelSet::kSurface, m)); };
-    table.rows.push_back({contender.label,
-                          {all(Metric::kRelmse), cell_of(cell.mean()[0].energy()),
-                           all(Metric::kTemporalError), all(Metric::kPsnr), all(Metric::kSsim),
-                           cell_of(figure(cell, PixelSet::kYoung, Metric::kRelmse)),
-                           cell_of(figure(cell, PixelSet::kOld, Metric::kRelmse)), cell.render_ms,
-                           cell.antialias ? cell.antialias->ms : cell.denoise_ms, cell.extra_spp,
-                           cell.memory_mb, cell_of(equal.relmse.at(contender.label))}});
+    TableRow row{contender.label, {}};
+    for (const FiguresColumn& column : columns) row.cells.push_back(column.value(cell));
+    table.rows.push_back(std::move(row));
   }
   return table;
 }
@@ -138,7 +180,7 @@ TableRow ablation_row(const std::string& label, const Cell& cell, const Cell& wh
 // One row for a method with all its parts, and one without each; nothing if no contender lacks one.
 void add_ablation(const ComparePlan& plan, const CaseResults& results, PageSection& section) {
   PageTable table{
-      fmt::format("What each part is worth, {} spp", plan.shown_spp()),
+      fmt::format("What each part is worth, {}", plan.shown_text()),
       "A factor is the ratio to the method with all its parts. If it is above 1 without "
       "a part, that part lowers the error or saves time.",
       "method",
@@ -165,13 +207,20 @@ void add_ablation(const ComparePlan& plan, const CaseResults& results, PageSecti
 PageSection setup_section(const ComparePlan& plan) {
   const Machine machine = this_machine();
   PageSection section{"Setup", "", {}, {}, {}};
-  section.tables = {
-      facts_table("Machine and settings",
-                  {{"processor", fmt::format("{}, {} cores", machine.processor, machine.cores)},
-                   {"software", program_version() + ", " + machine.compiler},
-                   {"seed", fmt::format("{}", plan.seed)},
-                   {"bounces", fmt::format("{}", plan.bounces)},
-                   {"bases", fmt::format("up to {}", plan.bases)}})};
+  std::vector<std::pair<std::string, std::string>> facts{
+      {"processor", fmt::format("{}, {} cores", machine.processor, machine.cores)},
+      {"software", program_version() + ", " + machine.compiler}};
+  if (plan.recorded) {
+    const RecordedShot& shot = *plan.recorded;
+    facts.emplace_back("files", fmt::format("{}", fmt::join(shot.denoise.files.inputs, " ")));
+    facts.emplace_back("references", shot.reference + " " + shot.reference_b);
+    facts.emplace_back("frames", format_frame_range(plan.frames));
+  } else {
+    facts.emplace_back("seed", fmt::format("{}", plan.seed));
+    facts.emplace_back("bounces", fmt::format("{}", plan.bounces));
+    facts.emplace_back("bases", fmt::format("up to {}", plan.bases));
+  }
+  section.tables = {facts_table("Machine and settings", facts)};
   return section;
 }
 
@@ -185,12 +234,12 @@ Page compare_page(const ComparePlan& plan, const std::vector<CaseResults>& resul
   page.title = plan.is_antialiasing() ? "Antialiasing compared: error against run time"
                                       : "Denoisers compared: error against run time";
   page.subtitle = fmt::format(
-      "{} × {} pixels, frames {} after {} frames of history. The error is that of {} against two "
-      "independent references of {} samples a pixel each; their own noise cancels out.",
-      plan.extent.width, plan.extent.height, format_frame_range(plan.measured),
-      plan.frames.size() - plan.measured.size(),
-      plan.is_antialiasing() ? "the composed picture" : "indirect light times albedo",
-      plan.reference_spp);
+      "{} × {} pixels, frames {}{}. The error is that of {} against {}.", plan.extent.width,
+      plan.extent.height, format_frame_range(plan.measured),
+      plan.recorded
+          ? ""
+          : fmt::format(" after {} frames of history", plan.frames.size() - plan.measured.size()),
+      plan.measured_light(), plan.reference_text());
   for (const Contender& contender : plan.contenders) page.names.push_back(contender.label);
   for (std::size_t i = 0; i < results.size(); ++i) {
     PageSection section{results[i].scene.name, results[i].title, {}, {}, {}};

@@ -129,8 +129,8 @@ class GalleryMaker {
   [[nodiscard]] PageGallery make() {
     PageGallery gallery;
     gallery.title = "Pictures";
-    gallery.note = fmt::format("{} spp. Space plays, the left and right arrow keys step.",
-                               in_.plan.shown_spp());
+    gallery.note =
+        fmt::format("{}. Space plays, the left and right arrow keys step.", in_.plan.shown_text());
     // The frames are thinned, but shown at the pace of the sequence.
     gallery.frames_per_second = kFramesPerSecond * static_cast<double>(frames_.size()) /
                                 static_cast<double>(in_.plan.measured.size());
@@ -148,18 +148,15 @@ class GalleryMaker {
  private:
   [[nodiscard]] std::vector<GalleryKind> kinds() const {
     const std::string low = fmt::format("{}", kLow), high = fmt::format("{}", kHigh);
-    return {
-        {"crop",
-         fmt::format(
-             "{} in the square where {} has most error: columns {} to {}, rows {} to {}",
-             in_.plan.is_antialiasing() ? "The composed picture" : "Indirect light times albedo",
-             in_.plan.ours().label, crop_.x0, crop_.x1 - 1, crop_.y0, crop_.y1 - 1)},
-        {"error",
-         "Root of the relMSE of each pixel against the reference, including the noise of the "
-         "reference",
-         ramp_css(), low, high},
-        {"change of error", "The same for the change of the error since the previous frame",
-         ramp_css(), low, high}};
+    return {{"crop", fmt::format("Where {} has most error of {}: columns {} to {}, rows {} to {}",
+                                 in_.plan.ours().label, in_.plan.measured_light(), crop_.x0,
+                                 crop_.x1 - 1, crop_.y0, crop_.y1 - 1)},
+            {"error",
+             "Root of the relMSE of each pixel against the reference, including the noise of the "
+             "reference",
+             ramp_css(), low, high},
+            {"change of error", "The same for the change of the error since the previous frame",
+             ramp_css(), low, high}};
   }
   [[nodiscard]] Planes<3> error(const Contender& contender, int frame) const {
     return relative_error(in_.output(contender, frame), in_.reference(frame));
@@ -189,7 +186,7 @@ class GalleryMaker {
     const Planes<3> mean = in_.reference(frame);
     // The error of A against the mean of A and B is as large as the error of that mean: it shows
     // the least error that the other heat maps can show.
-    const Planes<3> half = in_.references.load(ReferenceCache::Half::kA, frame);
+    const Planes<3> half = in_.half(ReferenceCache::Half::kA, frame);
     add_picture(frame, mean, relative_error(half, mean), tiles[0], previous_[0]);
     for (std::size_t i = 0; i < in_.plan.contenders.size(); ++i) {
       const Planes<3> image = in_.output(in_.plan.contenders[i], frame);
@@ -219,8 +216,8 @@ class GalleryMaker {
 }  // namespace
 
 Planes<3> ComparePictures::reference(int frame) const {
-  Planes<3> mean = references.load(ReferenceCache::Half::kA, frame);
-  const Planes<3> other = references.load(ReferenceCache::Half::kB, frame);
+  Planes<3> mean = half(ReferenceCache::Half::kA, frame);
+  const Planes<3> other = half(ReferenceCache::Half::kB, frame);
   for (std::size_t c = 0; c < 3; ++c) {
     for (int y = 0; y < mean[c].height(); ++y) {
       for (int x = 0; x < mean[c].width(); ++x) {
@@ -231,9 +228,16 @@ Planes<3> ComparePictures::reference(int frame) const {
   return mean;
 }
 
-Planes<3> ComparePictures::output(const Contender& contender, int frame) const {
-  const ExrReader reader(folder / contender.label / FilePattern(kFramePattern).name(frame));
-  return reader.read_planes<3>(contender.external || contender.antialias ? "" : "indirect");
+ComparePictures scene_pictures(const ComparePlan& plan, const ReferenceCache& references,
+                               std::filesystem::path folder, float exposure) {
+  return {
+      plan, exposure,
+      [&references](ReferenceCache::Half half, int frame) { return references.load(half, frame); },
+      [folder = std::move(folder)](const Contender& contender, int frame) {
+        const ExrReader reader(folder / contender.label / FilePattern(kFramePattern).name(frame));
+        const bool is_picture = contender.external || contender.antialias;
+        return reader.read_planes<3>(is_picture ? "" : "indirect");
+      }};
 }
 
 PageGallery compare_gallery(const ComparePictures& pictures) {

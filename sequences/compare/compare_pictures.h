@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 
 #include "sequences/compare/compare_plan.h"
 #include "sequences/compare/reference_cache.h"
@@ -9,19 +10,25 @@
 
 namespace eigenlight {
 
-/// The measured frames of one scene at plan.shown_spp(), read back from their files.
+/// The measured frames of one scene at plan.shown_spp(). Both functions throw std::runtime_error
+/// naming a file that cannot be read.
 struct ComparePictures {
   const ComparePlan& plan;
-  const ReferenceCache& references;
-  std::filesystem::path folder;  ///< as CompareGroup::pictures
   float exposure = 1.0f;
-
-  /// The mean of both references. Throws std::runtime_error naming a file that cannot be read; so
-  /// does output().
-  [[nodiscard]] Planes<3> reference(int frame) const;
+  /// One of two references; of one that has no second, both are the same.
+  std::function<Planes<3>(ReferenceCache::Half, int frame)> half;
   /// What a contender made of the frame.
-  [[nodiscard]] Planes<3> output(const Contender& contender, int frame) const;
+  std::function<Planes<3>(const Contender&, int frame)> output;
+
+  /// The mean of both references.
+  [[nodiscard]] Planes<3> reference(int frame) const;
 };
+
+/// Pictures of a scene, read back from their files. `folder`: as CompareGroup::pictures. All must
+/// outlive the result.
+[[nodiscard]] ComparePictures scene_pictures(const ComparePlan& plan,
+                                             const ReferenceCache& references,
+                                             std::filesystem::path folder, float exposure);
 
 /// One tile for the reference (the mean of both references) and one for each contender, with three
 /// kinds of pictures:

@@ -5,19 +5,23 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "frame/plane.h"
 #include "render/antialias/options.h"
 #include "sequences/compare/external_method.h"
+#include "sequences/compare/recorded_shot.h"
 #include "sequences/runs/flythrough.h"
 
 namespace eigenlight {
 
 /// As a user gives it.
 struct CompareSettings {
-  std::vector<std::string> scenes;  ///< SCENE, or SCENE:PERTURB with commas in place of `perturb`
-  std::string methods;              ///< with commas; empty: all
+  /// SCENE, or SCENE:PERTURB with commas in place of `perturb`; or EXR patterns of recorded frames,
+  /// the inputs of one shot.
+  std::vector<std::string> scenes;
+  std::string methods;  ///< with commas; empty: all
   std::string spp = "1,2,3,4,8,16";
   std::string frames = "40-59";
   int warmup = 40;
@@ -38,6 +42,12 @@ struct CompareSettings {
   std::string markdown;   ///< file for the tables, `-` for standard output; empty: none
   std::string paper;      ///< not empty: rerun it; `size` and `frames` are then empty if not given
   std::string directory;
+  // Of recorded frames only.
+  std::string reference, reference_b;  ///< as RecordedShot has them
+  std::string layer;                   ///< empty: beauty
+  LayerChoice layers;
+  GuideChoice guides;
+  std::string cuts;
 };
 
 /// One column of the comparison: a method of ours, perhaps without one of its parts, a program, or
@@ -69,8 +79,10 @@ struct ComparePlan {
   std::vector<CompareCase> cases;
   std::vector<Contender> contenders;
   std::vector<int> spp;       ///< ascending
-  std::vector<int> measured;  ///< frames without a gap, ascending
-  std::vector<int> frames;    ///< those before them for history, and the measured ones
+  std::vector<int> measured;  ///< ascending; without a gap unless they are recorded
+  /// Those before them for history, and the measured ones; of recorded frames also those between
+  /// and behind.
+  std::vector<int> frames;
   Extent extent;
   int bases = 3, bounces = 3;
   std::uint32_t seed = 0;
@@ -78,6 +90,7 @@ struct ComparePlan {
   int reference_spp = 0;  ///< of each of the two references
   std::optional<double> equal_time;
   std::optional<CropPlan> crop;
+  std::optional<RecordedShot> recorded;  ///< in place of scenes: one case stands for it
   std::filesystem::path cache, directory;
 
   /// The sample count that pictures and tables are of: 3, the default of `eigenlight render`, else
@@ -88,6 +101,12 @@ struct ComparePlan {
   /// The contender whose errors others are given as multiples of: `noisy`, or no antialiasing. Null
   /// if it is not compared.
   [[nodiscard]] const Contender* baseline() const;
+  /// That sample count for people, `3 spp`, and `behind`; empty of recorded frames.
+  [[nodiscard]] std::string shown_text(std::string_view behind = {}) const;
+  /// What is measured, for people: `indirect light times albedo`.
+  [[nodiscard]] std::string measured_light() const;
+  /// What the references are, for people.
+  [[nodiscard]] std::string reference_text() const;
   /// Whether contenders are ways of antialiasing, measured on the composed picture.
   [[nodiscard]] bool is_antialiasing() const;
 };

@@ -32,7 +32,21 @@ Json contenders_json(const ComparePlan& plan) {
   return list;
 }
 
+Json recorded_json(const ComparePlan& plan) {
+  const RecordedShot& shot = *plan.recorded;
+  return {{"contenders", contenders_json(plan)},
+          {"ours", plan.ours().label},
+          {"inputs", shot.denoise.files.inputs},
+          {"references", {shot.reference, shot.reference_b}},
+          {"layer", shot.layer},
+          {"frames", format_frame_range(plan.measured)},
+          {"denoised_frames", format_frame_range(plan.frames)},
+          {"width", plan.extent.width},
+          {"height", plan.extent.height}};
+}
+
 Json settings_json(const ComparePlan& plan) {
+  if (plan.recorded) return recorded_json(plan);
   return {{"contenders", contenders_json(plan)},
           {"ours", plan.ours().label},
           {"spp", plan.spp},
@@ -69,32 +83,47 @@ std::string csv_line(const CaseResults& results, const Cell& cell) {
   const auto of = [&](PixelSet set, Metric metric) {
     return csv_number(mean[static_cast<std::size_t>(set)][metric]);
   };
-  return fmt::format(
-      "{},{},{},{},{},{},{},{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{}\n", results.scene.name,
-      cell.contender, cell.spp, of(PixelSet::kSurface, Metric::kRelmse),
-      csv_number(mean[0].energy()), of(PixelSet::kSurface, Metric::kTemporalError),
-      of(PixelSet::kSurface, Metric::kPsnr), of(PixelSet::kSurface, Metric::kSsim),
-      of(PixelSet::kYoung, Metric::kRelmse), of(PixelSet::kOld, Metric::kRelmse), cell.render_ms,
-      cell.denoise_ms, cell.total_ms(), cell.memory_mb, cell.extra_spp, cell.bad_pixels);
+  return fmt::format("{},{},{},{},{},{},{},{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{}\n",
+                     results.scene.name, cell.contender, cell.spp,
+                     of(PixelSet::kSurface, Metric::kRelmse), csv_number(mean[0].energy()),
+                     of(PixelSet::kSurface, Metric::kTemporalError),
+                     of(PixelSet::kSurface, Metric::kPsnr), of(PixelSet::kSurface, Metric::kSsim),
+                     of(PixelSet::kYoung, Metric::kRelmse), of(PixelSet::kOld, Metric::kRelmse),
+                     cell.render_ms + cell.files_ms, cell.denoise_ms, cell.total_ms(),
+                     cell.memory_mb, cell.extra_spp, cell.bad_pixels);
+}
+
+// Columns of the table for terminals behind the errors.
+std::string cost_head(const ComparePlan& plan, const EqualTime& equal) {
+  if (plan.recorded) return fmt::format("{:>11}{:>11}", "files ms", "denoise ms");
+  return fmt::format("{:>11}{:>11}{:>9}{:>15}", "render ms",
+                     plan.is_antialiasing() ? "aa ms" : "denoise ms", "MB",
+                     fmt::format("at {:.4g} ms", equal.ms));
+}
+
+std::string cost_line(const ComparePlan& plan, const EqualTime& equal, const Cell& cell) {
+  const std::string times =
+      fmt::format("{:>11.4g}{:>11.4g}", plan.recorded ? cell.files_ms : cell.render_ms,
+                  cell.antialias ? cell.antialias->ms : cell.denoise_ms);
+  if (plan.recorded) return times;
+  return times + fmt::format("{:>9.4g}{:>15}", cell.memory_mb,
+                             short_number(equal.relmse.at(cell.contender)));
 }
 
 std::string table_of(const ComparePlan& plan, const CaseResults& results) {
   const EqualTime equal = equal_time(plan, results);
-  std::string text = fmt::format("{}, {} spp, frames {}\n", results.scene.name, plan.shown_spp(),
+  std::string text = fmt::format("{}, {}frames {}\n", results.scene.name, plan.shown_text(", "),
                                  format_frame_range(plan.measured));
-  text += fmt::format("{:<32}{:>11}{:>9}{:>11}{:>11}{:>11}{:>9}{:>15}\n", "", "relmse", "energy",
-                      "temporal", "render ms", plan.is_antialiasing() ? "aa ms" : "denoise ms",
-                      "MB", fmt::format("at {:.4g} ms", equal.ms));
+  text += fmt::format("{:<32}{:>11}{:>9}{:>11}{}\n", "", "relmse", "energy", "temporal",
+                      cost_head(plan, equal));
   for (const Contender& contender : plan.contenders) {
     const Cell* cell = results.find(contender.label, plan.shown_spp());
     if (!cell) continue;
     const SetFigures mean = cell->mean();
     text +=
-        fmt::format("{:<32}{:>11}{:>9}{:>11}{:>11.4g}{:>11.4g}{:>9.4g}{:>15}\n", contender.label,
+        fmt::format("{:<32}{:>11}{:>9}{:>11}{}\n", contender.label,
                     short_number(mean[0][Metric::kRelmse]), short_number(mean[0].energy()),
-                    short_number(mean[0][Metric::kTemporalError]), cell->render_ms,
-                    cell->antialias ? cell->antialias->ms : cell->denoise_ms, cell->memory_mb,
-                    short_number(equal.relmse.at(contender.label)));
+                    short_number(mean[0][Metric::kTemporalError]), cost_line(plan, equal, *cell));
   }
   return text;
 }
@@ -139,13 +168,15 @@ Json to_json(const ComparePlan& plan, const std::vector<CaseResults>& results) {
   for (const CaseResults& one : results) {
     Json cells = Json::array();
     for (const Cell& cell : one.cells) cells.push_back(to_json(cell));
-    json["scenes"].push_back({{"name", one.scene.name},
-                              {"scene", one.scene.scene},
-                              {"perturb", one.scene.perturb},
-                              {"scene_hash", fmt::format("{:016x}", one.scene_hash)},
-                              {"references", one.references},
-                              {"equal_time", equal_time_json(equal_time(plan, one))},
-                              {"cells", std::move(cells)}});
+    Json scene = {{"name", one.scene.name}, {"scene", one.scene.scene}};
+    if (!plan.recorded) {
+      scene["perturb"] = one.scene.perturb;
+      scene["scene_hash"] = fmt::format("{:016x}", one.scene_hash);
+      scene["references"] = one.references;
+      scene["equal_time"] = equal_time_json(equal_time(plan, one));
+    }
+    scene["cells"] = std::move(cells);
+    json["scenes"].push_back(std::move(scene));
   }
   return json;
 }

@@ -35,7 +35,8 @@ struct EqualTime {
 /// `software`, `machine`, `settings`, and by scene `equal_time` and `cells` (to_json(Cell)).
 [[nodiscard]] nlohmann::ordered_json to_json(const ComparePlan& plan,
                                              const std::vector<CaseResults>& results);
-/// One line a cell, with a heading; a figure that was not measured is empty.
+/// One line a cell, with a heading; a figure that was not measured is empty. Of recorded frames
+/// `render_cpu_ms` is the time of files.
 [[nodiscard]] std::string to_csv(const std::vector<CaseResults>& results);
 /// For a terminal: a table a scene, at plan.shown_spp().
 [[nodiscard]] std::string to_table(const ComparePlan& plan,

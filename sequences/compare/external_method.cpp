@@ -88,6 +88,8 @@ double printed_ms(const ExternalMethod& method, const ChildResult& result) {
 
 }  // namespace
 
+bool ExternalMethod::wants(std::string_view place) const { return has_place(command, place); }
+
 bool ExternalMethod::runs_per_sequence() const {
   return has_place(command, "frames") || takes_all_frames();
 }
@@ -131,17 +133,25 @@ std::string ExternalRun::path(std::string_view role, int frame) const {
   return (scratch_ / FilePattern(fmt::format("{}.####.exr", role)).name(frame)).string();
 }
 
+bool ExternalRun::takes(int frame) const {
+  return std::binary_search(frames().begin(), frames().end(), frame);
+}
+
+void ExternalRun::add(const ExternalInputs& inputs) const {
+  write_float_layer(path("color", inputs.frame), "RGB", inputs.color);
+  if (method_.wants("albedo")) {
+    write_float_layer(path("albedo", inputs.frame), "RGB", inputs.albedo);
+  }
+  if (method_.wants("normal")) {
+    write_float_layer(path("normal", inputs.frame), "XYZ", inputs.normal);
+  }
+}
+
 void ExternalRun::add(const Frame& frame) const {
-  if (!std::binary_search(frames().begin(), frames().end(), frame.index)) return;
+  if (!takes(frame.index)) return;
   Planes<3> color;
   modulate(frame.surface.albedo, frame.lights[0].radiance, color);
-  write_float_layer(path("color", frame.index), "RGB", color);
-  if (has_place(method_.command, "albedo")) {
-    write_float_layer(path("albedo", frame.index), "RGB", frame.surface.albedo);
-  }
-  if (has_place(method_.command, "normal")) {
-    write_float_layer(path("normal", frame.index), "XYZ", frame.surface.normal);
-  }
+  add({frame.index, color, frame.surface.albedo, frame.surface.normal});
 }
 
 std::string ExternalRun::fill(int frame) const {

@@ -13,10 +13,10 @@ namespace eigenlight {
 
 /// A program that reads noisy frames from EXR files and writes denoised ones. Its command line is a
 /// shell's, with places to fill in; paths are put in quoted:
-///   {color}       R,G,B: albedo * raw indirect light, linear
+///   {color}       R,G,B: what is measured, noisy: albedo * raw indirect light, linear
 ///   {albedo}      R,G,B
 ///   {normal}      X,Y,Z, world space, unit; 0 without surface
-///   {output}      where it writes R,G,B: albedo * denoised indirect light
+///   {output}      where it writes R,G,B: the same without noise
 ///   {frame}       the number of the frame
 ///   {frames}      the frames that are measured, such as 40-59
 ///   {all_frames}  these and the frames before them that build up history
@@ -29,6 +29,7 @@ struct ExternalMethod {
   /// summed. Empty: its CPU time counts, start, reading and writing included.
   std::string time_pattern;
 
+  [[nodiscard]] bool wants(std::string_view place) const;  ///< whether {place} is in its command
   [[nodiscard]] bool runs_per_sequence() const;
   /// Whether it wants the frames before the measured ones too.
   [[nodiscard]] bool takes_all_frames() const;
@@ -49,6 +50,14 @@ struct ExternalCost {
   double peak_mb = 0.0;  ///< of the program, 10^6 bytes
 };
 
+/// What it is given of a frame. `albedo` and `normal` are read only if its command wants them.
+struct ExternalInputs {
+  int frame = 0;
+  const Planes<3>& color;
+  const Planes<3>& albedo;
+  const Planes<3>& normal;
+};
+
 /// Feeds one external method from a scratch directory, which must be empty and stays the caller's.
 class ExternalRun {
  public:
@@ -58,7 +67,11 @@ class ExternalRun {
 
   ExternalRun(const ExternalMethod& method, Frames frames, std::filesystem::path scratch);
 
-  /// Writes the inputs of a frame, if the method is to see it.
+  /// Whether the method is to see a frame.
+  [[nodiscard]] bool takes(int frame) const;
+  /// Writes the inputs of a frame that it takes.
+  void add(const ExternalInputs& inputs) const;
+  /// The same of albedo * light of a frame that was rendered, if it takes it.
   void add(const Frame& frame) const;
   /// Runs the program over all frames. Between two runs `stops` is asked. Throws std::runtime_error
   /// naming the method, and what it printed first, if it fails, leaves no output of a frame, or if

@@ -13,33 +13,19 @@
 #include "frame/bad_file.h"
 #include "sequences/files/frame_range.h"
 #include "sequences/files/ldr_image.h"
-#include "sequences/files/sequence_name.h"
 #include "sequences/metrics/evaluate_images.h"
+#include "sequences/metrics/layer_sequence.h"
 
 namespace eigenlight {
 namespace {
 
 namespace fs = std::filesystem;
 
-// A sequence of files, and what its layers begin with.
-struct Sequence {
-  SequenceName name;
-  std::string prefix;  // or empty
-};
-
-Sequence parse_sequence(const std::string& text) {
-  const std::size_t colon = text.rfind(".exr:");
-  std::error_code error;
-  if (colon == std::string::npos || fs::is_regular_file(text, error)) {
-    return {SequenceName(text), {}};
-  }
-  return {SequenceName(text.substr(0, colon + 4)), text.substr(colon + 5)};
-}
-
-std::vector<Sequence> sequences_of(const EvaluateOptions& options) {
-  std::vector<Sequence> sequences{parse_sequence(options.test), parse_sequence(options.reference)};
-  if (!options.reference_b.empty()) sequences.push_back(parse_sequence(options.reference_b));
-  for (const Sequence& sequence : sequences) {
+std::vector<LayerSequence> sequences_of(const EvaluateOptions& options) {
+  std::vector<LayerSequence> sequences{parse_layer_sequence(options.test),
+                                       parse_layer_sequence(options.reference)};
+  if (!options.reference_b.empty()) sequences.push_back(parse_layer_sequence(options.reference_b));
+  for (const LayerSequence& sequence : sequences) {
     const bool is_single = sequences.front().name.is_single();
     EL_CHECK(sequence.name.is_single() == is_single,
              "'{}' is one image and '{}' is a sequence; expected two of a kind",
@@ -56,14 +42,15 @@ std::vector<Sequence> sequences_of(const EvaluateOptions& options) {
   return sequences;
 }
 
-std::vector<int> frames_of(const EvaluateOptions& options, const std::vector<Sequence>& sequences) {
+std::vector<int> frames_of(const EvaluateOptions& options,
+                           const std::vector<LayerSequence>& sequences) {
   if (!options.frames.empty()) {
     EL_CHECK(!sequences.front().name.is_single(), "frames {}: '{}' is one image", options.frames,
              options.test);
     return parse_frame_range(options.frames);
   }
   std::set<int> found;
-  for (const Sequence& sequence : sequences) {
+  for (const LayerSequence& sequence : sequences) {
     if (sequence.name.is_single()) found.insert(0);
     for (const int frame : sequence.name.frames()) found.insert(frame);
   }
@@ -73,10 +60,10 @@ std::vector<int> frames_of(const EvaluateOptions& options, const std::vector<Seq
 
 // Reason by frame, for frames of which a file is missing.
 std::map<int, std::string> missing_files(const std::vector<int>& frames,
-                                         const std::vector<Sequence>& sequences) {
+                                         const std::vector<LayerSequence>& sequences) {
   std::map<int, std::string> missing;
   for (const int frame : frames) {
-    for (const Sequence& sequence : sequences) {
+    for (const LayerSequence& sequence : sequences) {
       std::error_code error;
       if (fs::exists(sequence.name.path(frame), error)) continue;
       const std::string line = fmt::format("{}: no such file", sequence.name.path(frame).string());
@@ -95,7 +82,7 @@ std::map<int, std::string> missing_files(const std::vector<int>& frames,
                                        format_frame_range(numbers)));
 }
 
-FramePaths paths_of(int frame, const std::vector<Sequence>& sequences) {
+FramePaths paths_of(int frame, const std::vector<LayerSequence>& sequences) {
   FramePaths paths{sequences[0].name.path(frame), sequences[1].name.path(frame), {}, {}};
   if (sequences.size() > 2) paths.reference_b = sequences[2].name.path(frame);
   for (std::size_t i = 0; i < sequences.size(); ++i) paths.prefixes[i] = sequences[i].prefix;
@@ -211,7 +198,7 @@ class Evaluator {
 Evaluation evaluate(const EvaluateOptions& given) {
   EvaluateOptions options = given;
   options.metrics.is_display = is_ldr_name(options.test);
-  const std::vector<Sequence> sequences = sequences_of(options);
+  const std::vector<LayerSequence> sequences = sequences_of(options);
   const std::vector<int> frames = frames_of(options, sequences);
   const auto missing = missing_files(frames, sequences);
   if (!missing.empty() && !options.skips_bad) fail_missing(missing, frames.size());

@@ -12,9 +12,9 @@
 #include "frame/bad_file.h"
 #include "sequences/exr/exr_colors.h"
 #include "sequences/files/exr_io.h"
-#include "sequences/files/exr_layers.h"
 #include "sequences/files/ldr_image.h"
 #include "sequences/files/perturbation.h"
+#include "sequences/metrics/layer_sequence.h"
 
 namespace eigenlight {
 namespace {
@@ -28,16 +28,6 @@ struct Source {
   std::optional<ExrReader> reader;  // none for 8-bit pictures
   ExrWindow window;                 // where it has pixels
 };
-
-// The name by which the file has the layer that was asked for.
-std::string layer_of(const ExrReader& reader, const std::string& asked, const std::string& prefix) {
-  if (prefix.empty()) return asked;
-  std::vector<std::string> layers;
-  for (const std::string& layer : reader.layers()) {
-    if (layer.starts_with(prefix + '.')) layers.push_back(layer.substr(prefix.size() + 1));
-  }
-  return prefix + '.' + find_layer(layers, asked).value_or(asked);
-}
 
 // The layer that is measured where none was asked for.
 std::string default_layer(const std::filesystem::path& reference, const std::string& prefix) {
@@ -58,7 +48,7 @@ Source open_source(const std::filesystem::path& path, const std::string& layer,
     source.window = {0, 0, extent.width, extent.height};
   } else {
     source.reader.emplace(path);
-    const std::string name = layer_of(*source.reader, layer, prefix);
+    const std::string name = prefixed_layer(*source.reader, layer, prefix);
     source.colors = source.reader->read_colors(name);
     source.window = source.reader->data_window(name);
   }

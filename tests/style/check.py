@@ -48,10 +48,10 @@ ROOMS = {
     "sequences/metrics": ["sequences/files"],
     "sequences/stress": ["sequences/runs"],
     "sequences/pages": ["sequences/metrics", "temporal/frame_report.h"],
-    "sequences/compare": ["sequences/pages", "sequences/runs"],
     "sequences/denoise": ["sequences/conventions", "sequences/files", "temporal"],
+    "sequences/compare": ["sequences/denoise", "sequences/pages", "sequences/runs"],
     "sequences/lab": ["sequences/compare", "sequences/stress", "spatial/training"],
-    "sequences/cli": ["sequences/lab", "sequences/denoise"],
+    "sequences/cli": ["sequences/lab"],
     "tests": ["sequences/cli", "sequences/conventions"],
 }
 FOLDERS = sorted({room.split("/")[0] for room in ROOMS})

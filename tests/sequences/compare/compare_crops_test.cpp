@@ -50,7 +50,8 @@ TEST(CompareCrops, StandInRowsInTheOrderOfTheContendersAndTheReferenceLast) {
   write(dir / "frames/a", "indirect.", 0.25f);
   write(dir / "frames/b", "", 0.5f);
   write(dir / "frames/c", "indirect.", 0.75f);
-  const Plane<std::uint8_t> rows = crop_rows({plan, references, dir / "frames", 1.0f});
+  const Plane<std::uint8_t> rows =
+      crop_rows(scene_pictures(plan, references, dir / "frames", 1.0f));
 
   constexpr int kFactor = 72;  // 288 pixels for 4
   constexpr int kWidth = 4 * kFactor, kHeight = 3 * kFactor, kGap = 4;
