@@ -4,10 +4,12 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "sequences/cli/job.h"
 #include "sequences/cli/layer_options.h"
+#include "sequences/denoise/denoise_page.h"
 #include "sequences/denoise/plan_text.h"
 #include "sequences/files/directory.h"
 
@@ -16,7 +18,7 @@ namespace {
 
 struct DenoiseCommand {
   DenoiseSettings settings;
-  bool dry_run = false;
+  bool dry_run = false, page = false;
   JobOptions job;
 };
 
@@ -36,6 +38,9 @@ void add_file_options(CLI::App& command, DenoiseCommand& options) {
   command.add_flag("--skip-existing", options.settings.skip_existing,
                    "Do not write frames again whose output is complete");
   command.add_flag("--resume", options.settings.resume, "Go on where an interrupted run stopped");
+  command.add_flag("--page", options.page,
+                   "Write page/index.html beside the outputs: noisy beside denoised frames, "
+                   "layers, times");
   command.add_flag("--dry-run", options.dry_run,
                    "Print what would be done with each layer, and stop");
 }
@@ -53,13 +58,23 @@ int denoise(const DenoiseCommand& command, const Console& console) {
   }
   job.say(to_text(plan));
   Progress progress = job.progress(0, plan.frames.size());
-  const DenoiseTotals totals =
-      run_denoising(command.settings, plan,
-                    {[&] { return job.interrupted(); }, [&](int f) { progress.frame_done(f); }});
+  DenoiseCallbacks callbacks{[&] { return job.interrupted(); },
+                             [&](int frame) { progress.frame_done(frame); }};
+  std::optional<DenoiseLog> log;
+  if (command.page) {
+    make_directory(denoise_page_folder(plan));
+    log.emplace(denoise_page_folder(plan) / "frames.jsonl", command.settings.resume);
+    callbacks.record = [&](const DenoiseRecord& record) { log->append(record); };
+  }
+  const DenoiseTotals totals = run_denoising(command.settings, plan, callbacks);
   progress.finish();
   job.stop_if_interrupted(fmt::format("stopped after {} of {} frames; to go on:\n  {}{}",
                                       totals.frames, plan.frames.size(), job.command_line(),
                                       command.settings.resume ? "" : " --resume"));
+  if (command.page) {
+    write_denoise_page(plan, totals);
+    job.say((denoise_page_folder(plan) / "index.html").string());
+  }
   job.print_results(to_json(totals), to_text(totals));
   return kSuccess;
 }

@@ -15,6 +15,7 @@
 #include "sequences/files/checkpoint.h"
 #include "sequences/files/directory.h"
 #include "temporal/eigen/soft_denoiser.h"
+#include "temporal/stage_clock.h"
 
 namespace eigenlight {
 namespace {
@@ -32,7 +33,8 @@ struct FinishedFrame {
   std::shared_ptr<const RawFrame> raw;
   std::vector<std::vector<NewChannel>> outputs;  // for each input
   std::size_t index = 0;
-  bool is_written = true;   // its outputs are not there yet
+  bool is_written = true;  // its outputs are not there yet
+  DenoiseRecord record;
   std::vector<char> state;  // of the denoisers behind this frame; empty: no checkpoint is due
 };
 
@@ -79,7 +81,7 @@ class Run {
   void write_frames();
   void denoise_frames();
   FinishedFrame denoise(ReadyFrame ready, std::size_t index);
-  void write_frame(const FinishedFrame& frame);
+  void write_frame(const FinishedFrame& frame, DenoiseRecord& record);
   void load();
   [[nodiscard]] std::vector<char> state() const;
   [[nodiscard]] bool is_complete(std::size_t index) const;
@@ -103,6 +105,7 @@ void Run::read_frames() {
     // The frame before is read again for what motion and depth say of it.
     const std::size_t start = position_ > 0 ? position_ - 1 : 0;
     for (std::size_t i = start; i < plan_.frames.size(); ++i) {
+      StageClock clock;
       ReadyFrame ready;
       ready.raw = std::make_shared<const RawFrame>(
           read_raw_frame(plan_.frames[i], plan_.layers, plan_.canvas));
@@ -110,6 +113,7 @@ void Run::read_frames() {
         ready.views.push_back(std::make_unique<Frame>());
         builder.build(ready.raw, *ready.views.back());
       }
+      ready.read_ms = clock.lap().wall_ms;
       if (i >= position_ && !ready_.push(std::move(ready))) return;
     }
     ready_.close();
@@ -126,7 +130,8 @@ void Run::add_notes(const std::vector<std::string>& lines) {
   }
 }
 
-void Run::write_frame(const FinishedFrame& frame) {
+void Run::write_frame(const FinishedFrame& frame, DenoiseRecord& record) {
+  StageClock clock;
   const FrameFiles& paths = plan_.frames[frame.index];
   for (std::size_t i = 0; i < paths.outputs.size(); ++i) {
     std::vector<ExrReplacement> replacements;
@@ -138,20 +143,24 @@ void Run::write_frame(const FinishedFrame& frame) {
     const ExrRewriteReport report =
         rewrite_exr(*frame.raw->files[i], paths.outputs[i], replacements);
     totals_.clamped += report.values.clamped;
+    record.clamped += report.values.clamped;
     add_notes(report.recompressed);
     add_notes(report.levels);
   }
   ++totals_.frames;
+  record.write_ms = clock.lap().wall_ms;
 }
 
 void Run::write_frames() {
   try {
     while (const std::optional<FinishedFrame> frame = done_.pop()) {
+      DenoiseRecord record = frame->record;
       if (frame->is_written) {
-        write_frame(*frame);
+        write_frame(*frame, record);
       } else {
         ++totals_.skipped;
       }
+      if (callbacks_.record) callbacks_.record(record);
       if (!frame->state.empty()) {
         write_checkpoint(checkpoint_path(plan_), {description_, frame->index + 1, frame->state});
       }
@@ -195,15 +204,19 @@ FinishedFrame Run::denoise(ReadyFrame ready, std::size_t index) {
   FinishedFrame finished;
   finished.raw = ready.raw;
   finished.index = index;
+  finished.record.read_ms = ready.read_ms;
   finished.outputs.resize(plan_.frames[index].inputs.size());
   for (std::size_t v = 0; v < denoisers_.size(); ++v) {
     ReadySource source;
     source.set(ready.views[v].get());
     SoftDenoiser& denoiser = *denoisers_[v];
     if (!denoiser.step(source)) throw std::logic_error("a frame was lost");
+    add_report(denoiser.report(), finished.record);
+    StageClock clock;
     std::vector<const Planes<3>*> lights;
     for (int i = 0; i < denoiser.layers(); ++i) lights.push_back(&denoiser.output(i));
     compose_view(*ready.raw, plan_.layers.views[v], plan_.canvas, lights, finished.outputs);
+    finished.record.compose_ms += clock.lap().wall_ms;
   }
   return finished;
 }

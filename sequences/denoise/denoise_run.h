@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sequences/denoise/compose_output.h"
+#include "sequences/denoise/denoise_record.h"
 #include "sequences/denoise/frame_builder.h"
 #include "sequences/denoise/sequence_files.h"
 #include "temporal/denoiser.h"
@@ -51,6 +52,8 @@ struct DenoiseTotals {
 struct DenoiseCallbacks {
   std::function<bool()> interrupted;
   std::function<void(int frame)> frame_done;
+  /// How a frame went, before it counts as done. May be empty.
+  std::function<void(const DenoiseRecord&)> record = {};
 };
 
 /// Denoises all frames of a plan. Stops after the frame at hand when interrupted; files are

@@ -15,6 +15,7 @@ namespace eigenlight {
 struct ReadyFrame {
   std::shared_ptr<const RawFrame> raw;
   std::vector<std::unique_ptr<Frame>> views;
+  double read_ms = 0.0;  ///< wall clock
 };
 
 /// Hands the denoiser the frame that was read for it.

@@ -9,6 +9,7 @@
 #include "sequences/files/atomic_file.h"
 #include "sequences/pages/run_pictures.h"
 #include "sequences/pages/run_records.h"
+#include "sequences/pages/stage_times.h"
 #include "temporal/frame_report.h"
 
 namespace eigenlight {
@@ -21,11 +22,6 @@ double total(const Values& values) { return std::accumulate(values.begin(), valu
 double mean(const Values& values) { return total(values) / static_cast<double>(values.size()); }
 
 // ---- stage times
-
-struct StageTimes {
-  std::string name;
-  Values wall_ms, cpu_ms;  // by frame
-};
 
 // In the order of the log. Stages that never took time are left out.
 std::vector<StageTimes> stage_times(const RunRecords& records) {
@@ -40,18 +36,6 @@ std::vector<StageTimes> stage_times(const RunRecords& records) {
   return stages;
 }
 
-PageTable time_table(const std::vector<StageTimes>& stages) {
-  PageTable table{"Mean time per frame", "", "stage", {{"wall clock, ms"}, {"CPU, ms"}}, {}};
-  double wall = 0.0, cpu = 0.0;
-  for (const StageTimes& stage : stages) {
-    table.rows.push_back({stage.name, {mean(stage.wall_ms), mean(stage.cpu_ms)}});
-    wall += mean(stage.wall_ms);
-    cpu += mean(stage.cpu_ms);
-  }
-  table.rows.push_back({"all", {wall, cpu}, true});
-  return table;
-}
-
 PageBackground background_of(const std::vector<StageTimes>& stages) {
   PageBackground background{"rendering and files", {}};
   for (const StageTimes& stage : stages) {
@@ -64,24 +48,6 @@ PageBackground background_of(const std::vector<StageTimes>& stages) {
 
 // ---- plots over the frames
 
-PlotSeries series_of(std::string name, const std::vector<int>& frames, const Values& values) {
-  PlotSeries series{std::move(name), {}};
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    series.points.push_back({static_cast<double>(frames[i]), values[i]});
-  }
-  return series;
-}
-
-PagePlot time_plot(const std::vector<int>& frames, const std::vector<StageTimes>& stages) {
-  PagePlot plot{"Time per stage", "", {"frame"}, {"wall clock, ms"}, {}};
-  plot.frames = frames;
-  plot.is_stacked = true;
-  for (const StageTimes& stage : stages) {
-    plot.series.push_back(series_of(stage.name, frames, stage.wall_ms));
-  }
-  return plot;
-}
-
 // A value that exists only where a frame shows a surface, times `factor`.
 Values on_surfaces(const RunRecords& records, const char* pointer, double factor) {
   Values values = records.column<double>(pointer);
@@ -92,34 +58,29 @@ Values on_surfaces(const RunRecords& records, const char* pointer, double factor
   return values;
 }
 
-PagePlot surface_plot(PagePlot plot, const char* name, const std::vector<int>& frames,
-                      const Values& values) {
+PagePlot rank_plot(const std::vector<int>& frames, const Values& values) {
+  PagePlot plot{"Rank",
+                "Mean number of bases in use, over the tiles with a surface.",
+                {"frame"},
+                {"bases"},
+                {series_of("rank", frames, values)}};
   plot.y.starts_at_zero = true;
   plot.frames = frames;
-  plot.series = {series_of(name, frames, values)};
   return plot;
 }
 
 PageSection frames_section(const RunRecords& records, const std::vector<int>& frames,
                            const std::vector<StageTimes>& stages) {
   PageSection section{"Over the frames", "Click a plot to see that frame.", {}, {}, {}};
-  section.plots.push_back(time_plot(frames, stages));
-  const char* share_note = "A cut may lie beyond the scale.";
-  PagePlot shares = surface_plot(
-      {"Pixels without history", share_note, {"frame"}, {"share of surface pixels, %"}, {}},
-      "new pixels", frames, on_surfaces(records, "/new_share", 100.0));
-  const auto cuts = records.column<bool>("/cut");
-  for (std::size_t i = 0; i < cuts.size(); ++i) {
-    if (cuts[i]) shares.off_scale.push_back(frames[i]);
+  section.plots.push_back(stage_plot(frames, stages));
+  std::vector<int> cuts;
+  const auto is_cut = records.column<bool>("/cut");
+  for (std::size_t i = 0; i < is_cut.size(); ++i) {
+    if (is_cut[i]) cuts.push_back(frames[i]);
   }
-  section.plots.push_back(std::move(shares));
   section.plots.push_back(
-      surface_plot({"Rank",
-                    "Mean number of bases in use, over the tiles with a surface.",
-                    {"frame"},
-                    {"bases"},
-                    {}},
-                   "rank", frames, on_surfaces(records, "/rank", 1.0)));
+      new_pixels_plot(frames, on_surfaces(records, "/new_share", 100.0), std::move(cuts)));
+  section.plots.push_back(rank_plot(frames, on_surfaces(records, "/rank", 1.0)));
   return section;
 }
 
@@ -214,7 +175,7 @@ Page run_page(const std::filesystem::path& dir) {
   for (const StageTimes& stage : stages) page.names.push_back(stage.name);
   page.background = background_of(stages);
   PageSection summary{"Summary", "", {}, {}, {}};
-  summary.tables = {run_table(records), time_table(stages), skip_table(records, pixels)};
+  summary.tables = {run_table(records), stage_table(stages), skip_table(records, pixels)};
   page.sections = {player_section(records, dir, frames), std::move(summary),
                    frames_section(records, frames, stages)};
   return page;

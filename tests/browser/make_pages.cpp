@@ -1,6 +1,7 @@
 // make_pages KIND DIR: writes DIR/index.html, a page of invented results.
 //   run-N    a run of N frames
 //   compare  a comparison of two scenes
+//   denoise  `denoise` over five frames of a painted wall, three of whose pixels are NaN in each
 //   paper    a paper with one claim, a table and two plots
 #include <cstdio>
 #include <cstdlib>
@@ -8,11 +9,13 @@
 #include <numeric>
 #include <string>
 
+#include "sequences/denoise/denoise_page.h"
 #include "sequences/files/atomic_file.h"
 #include "sequences/lab/paper.h"
 #include "sequences/pages/run_page.h"
 #include "tests/support/fake_comparison.h"
 #include "tests/support/fake_run.h"
+#include "tests/support/fake_shot.h"
 
 namespace eigenlight {
 namespace {
@@ -35,6 +38,25 @@ Page comparison() {
   return page;
 }
 
+// Writes the page itself, to DIR/index.html.
+void make_denoised(const std::filesystem::path& dir) {
+  FakeShot shot;
+  shot.nan_pixels = 3;
+  for (int frame = 1; frame <= 5; ++frame) {
+    shot.write(dir / ("s.000" + std::to_string(frame) + ".exr"), frame);
+  }
+  DenoiseSettings settings;
+  settings.files.inputs = {(dir / "s.####.exr").string()};
+  settings.files.output = dir / "out";
+  const DenoisePlan plan = plan_denoising(settings);
+  std::filesystem::create_directories(denoise_page_folder(plan));
+  DenoiseLog log(denoise_page_folder(plan) / "frames.jsonl", false);
+  const DenoiseCallbacks callbacks{[] { return false; }, [](int) {},
+                                   [&](const DenoiseRecord& record) { log.append(record); }};
+  write_file_atomically(dir / "index.html",
+                        to_html(denoise_page(plan, run_denoising(settings, plan, callbacks))));
+}
+
 Page paper() {
   PaperReport report;
   report.claims = {{"Table 1", "the filter is fast", "1 ms", "2 ms", Verdict::kInPart},
@@ -54,6 +76,8 @@ int make(const std::string& kind, const std::filesystem::path& dir) {
   std::filesystem::create_directories(dir);
   if (kind.starts_with("run-")) {
     make_run(dir, std::atoi(kind.c_str() + 4));
+  } else if (kind == "denoise") {
+    make_denoised(dir);
   } else if (kind == "compare" || kind == "paper") {
     write_file_atomically(dir / "index.html", to_html(kind == "paper" ? paper() : comparison()));
   } else {
@@ -68,7 +92,7 @@ int make(const std::string& kind, const std::filesystem::path& dir) {
 
 int main(int argc, char** argv) {
   if (argc != 3) {
-    std::fputs("usage: make_pages run-N|compare|paper DIR\n", stderr);
+    std::fputs("usage: make_pages run-N|denoise|compare|paper DIR\n", stderr);
     return 2;
   }
   try {

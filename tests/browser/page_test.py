@@ -1,6 +1,6 @@
 """Drives a page in headless Chromium: loads it, clicks, drags, presses keys, and reads what it shows.
 
-Usage: page_test.py MAKE_PAGES run|compare|paper [--pictures DIR]
+Usage: page_test.py MAKE_PAGES run|denoise|compare|paper [--pictures DIR]
 Each page is checked in a wide, light window and in a narrow, dark one. Exit status: 0, 1 if a check fails, 77
 (skipped) without Chromium. --pictures writes screenshots of the pages to DIR.
 """
@@ -16,6 +16,7 @@ FOLDER = pathlib.Path(__file__).parent
 # The pages of each kind, and the most kilobytes that one may have: few more than it has today.
 PAGES = {
     "run": {"run-1": 100, "run-12": 650, "run-300": 8000},
+    "denoise": {"denoise": 250},
     "compare": {"compare": 110},
     "paper": {"paper": 45},
 }

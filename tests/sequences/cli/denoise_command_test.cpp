@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "sequences/files/atomic_file.h"
 #include "tests/support/command_line.h"
 #include "tests/support/fake_shot.h"
 #include "tests/support/temp_dir.h"
@@ -55,6 +56,21 @@ TEST_F(DenoiseCommand, ADryRunWritesNothing) {
     has_beauty |= layer["role"] == "beauty" && layer["use"] == "composed";
   }
   EXPECT_TRUE(has_beauty);
+}
+
+TEST_F(DenoiseCommand, APageStandsBesideTheOutputs) {
+  const Outcome outcome = denoise({"--page"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("out/page/index.html\n"));
+  const std::string page = read_whole_file(dir_ / "out/page/index.html");
+  EXPECT_THAT(page, HasSubstr("s.0001.exr to s.0003.exr, denoised"));
+  EXPECT_THAT(page, HasSubstr("data:image/jpeg"));
+  // Pages never change frames.
+  EXPECT_EQ(call({"denoise", (dir_ / "s.####.exr").string(), "-o", (dir_ / "b").string()}).status,
+            0);
+  for (const char* name : {"s.0001.exr", "s.0002.exr", "s.0003.exr"}) {
+    EXPECT_EQ(read_whole_file(dir_ / "out" / name), read_whole_file(dir_ / "b" / name)) << name;
+  }
 }
 
 TEST_F(DenoiseCommand, QuietPrintsNothing) {
