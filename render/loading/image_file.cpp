@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "frame/float_traps.h"
+#include "render/loading/exr_image.h"
 
 namespace eigenlight {
 namespace {
@@ -54,6 +55,51 @@ Texture to_texture(OIIO::ImageInput& input, const std::string& name) {
   return texture;
 }
 
+// 8-bit sRGB of a linear value, for base colors.
+std::uint8_t to_srgb(float linear) {
+  const float v = std::isgreater(linear, 0.0f) ? std::min(linear, 1.0f) : 0.0f;
+  const float s = v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1.0f / 2.4f) - 0.055f;
+  return static_cast<std::uint8_t>(std::lround(255.0f * s));
+}
+
+Texture exr_texture(const std::filesystem::path& path) {
+  const ExrImage image = read_exr_image(path);
+  Texture texture{path.string(), image.color[0].extent(), {}};
+  for (int y = 0; y < texture.extent.height; ++y) {
+    for (int x = 0; x < texture.extent.width; ++x) {
+      for (const auto& plane : image.color) texture.rgba.push_back(to_srgb(plane(x, y)));
+      const float alpha = image.alpha.empty() ? 1.0f : image.alpha(x, y);
+      const float clamped = std::isgreater(alpha, 0.0f) ? std::min(alpha, 1.0f) : 0.0f;
+      texture.rgba.push_back(static_cast<std::uint8_t>(std::lround(255.0f * clamped)));
+    }
+  }
+  return texture;
+}
+
+// Checks the radiance of the next pixel.
+void add_radiance(const glm::vec3& radiance, const std::string& name, Environment& map) {
+  for (int c = 0; c < 3; ++c) {
+    if (!(radiance[c] >= 0.0f) || std::isinf(radiance[c])) {
+      fail(name, fmt::format("pixel {} holds {}, expected a finite radiance >= 0",
+                             map.radiance.size(), radiance[c]));
+    }
+  }
+  map.radiance.push_back(radiance);
+}
+
+Environment exr_environment(const std::filesystem::path& path, float scale) {
+  const ExrImage image = read_exr_image(path);
+  Environment map{image.color[0].extent(), {}};
+  map.radiance.reserve(map.extent.pixels());
+  for (int y = 0; y < map.extent.height; ++y) {
+    for (int x = 0; x < map.extent.width; ++x) {
+      const glm::vec3 light(image.color[0](x, y), image.color[1](x, y), image.color[2](x, y));
+      add_radiance(light * scale, path.string(), map);
+    }
+  }
+  return map;
+}
+
 /// Configuration that keeps color from being multiplied by alpha, which only cuts holes here.
 OIIO::ImageSpec unassociated() {
   OIIO::ImageSpec config;
@@ -65,6 +111,7 @@ OIIO::ImageSpec unassociated() {
 
 Texture read_texture(const std::filesystem::path& path) {
   const FloatTrapsOff threads_of_openimageio_start_here;
+  if (is_exr_file(path)) return exr_texture(path);
   const OIIO::ImageSpec config = unassociated();
   const InputPtr input = OIIO::ImageInput::open(path.string(), &config);
   if (!input) fail(path.string(), OIIO::geterror());
@@ -85,6 +132,7 @@ Texture read_texture(std::span<const std::uint8_t> bytes, const std::string& nam
 
 Environment read_environment(const std::filesystem::path& path, float scale) {
   const FloatTrapsOff pixels_may_hold_nan;
+  if (is_exr_file(path)) return exr_environment(path, scale);
   const std::string name = path.string();
   const InputPtr input = OIIO::ImageInput::open(name);
   if (!input) fail(name, OIIO::geterror());
@@ -95,14 +143,7 @@ Environment read_environment(const std::filesystem::path& path, float scale) {
   map.radiance.reserve(map.extent.pixels());
   for (std::size_t i = 0; i < map.extent.pixels(); ++i) {
     const float* p = &pixels[i * channels];
-    const glm::vec3 radiance = glm::vec3(p[0], p[1], p[2]) * scale;
-    for (int c = 0; c < 3; ++c) {
-      if (!(radiance[c] >= 0.0f) || std::isinf(radiance[c])) {
-        fail(name,
-             fmt::format("pixel {} holds {}, expected a finite radiance >= 0", i, radiance[c]));
-      }
-    }
-    map.radiance.push_back(radiance);
+    add_radiance(glm::vec3(p[0], p[1], p[2]) * scale, name, map);
   }
   return map;
 }

@@ -1,5 +1,5 @@
-// Reads textures and environment maps from files or memory. image_file.cpp is the only file of
-// render/ that includes OpenImageIO.
+// Reads textures and environment maps from files or memory: OpenEXR through sequences/exr, all else
+// through OpenImageIO, which no other file of render/ includes.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@
 namespace eigenlight {
 
 /// Reads a base color image (PNG, JPEG, TGA, ...) as 8-bit sRGB with the top row first. Gray images
-/// get three equal channels; images without alpha are opaque. Throws std::runtime_error with the
-/// file and the reason.
+/// get three equal channels; images without alpha are opaque; EXR is linear and is encoded as sRGB.
+/// Throws std::runtime_error with the file and the reason.
 [[nodiscard]] Texture read_texture(const std::filesystem::path& path);
 
 /// Reads the bytes of an image file, which .glb models embed. Error messages call it `name`.

@@ -33,7 +33,7 @@ ROOMS = {
     "temporal/baselines": ["spatial/rivals", "temporal/samples"],
     "temporal": ["temporal/eigen", "temporal/baselines"],
     "render/scene": ["frame"],
-    "render/loading": ["render/scene"],
+    "render/loading": ["render/scene", "sequences/exr"],
     "render/builtin": ["render/scene"],
     "render/rays": ["render/scene"],
     "render/lights": ["render/rays"],

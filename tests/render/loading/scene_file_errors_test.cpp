@@ -5,6 +5,7 @@
 #include <string>
 
 #include "render/loading/image_file.h"
+#include "sequences/exr/exr_write.h"
 #include "tests/render/loading/scene_file_fixture.h"
 
 namespace eigenlight {
@@ -99,6 +100,13 @@ TEST_F(SceneFile, ErrorNamesTheUnreadableImage) {
   EXPECT_THAT([] { (void)read_texture(std::span<const std::uint8_t>(), "empty.png"); },
               throws("empty.png"));
   EXPECT_THAT([this] { (void)read_environment(folder_ / "m.obj", 1.0f); }, throws("m.obj"));
+  const Plane<float> gray({2, 2});
+  const ExrChannel channels[] = {{"Y", ExrType::kHalf, &gray}};
+  write_exr(folder_ / "gray.exr", channels, {});
+  EXPECT_THAT([this] { (void)read_environment(folder_ / "gray.exr", 1.0f); }, throws("gray.exr"));
+  write("cut.exr", "v/1\x01");
+  EXPECT_THAT([this] { (void)read_environment(folder_ / "cut.exr", 1.0f); },
+              testing::ThrowsMessage<std::runtime_error>(HasSubstr("cut.exr")));
 }
 
 }  // namespace

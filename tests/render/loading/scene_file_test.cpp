@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include "render/loading/image_file.h"
+#include "sequences/exr/exr_write.h"
 #include "tests/render/loading/scene_file_fixture.h"
 
 namespace eigenlight {
@@ -96,6 +98,49 @@ TEST_F(SceneFile, EveryKindOfLightIsRead) {
   // The lamp emits in the model but not in scene.json, which takes precedence.
   EXPECT_EQ(material(scene, "lamp").emission, glm::vec3(0));
   EXPECT_THAT(notes_, ElementsAre(HasSubstr("\"lamp\" emits")));
+}
+
+// Colors of 3 x 2 pixels; channels of another layer and a depth stand before them in the file.
+void write_exr_map(const std::filesystem::path& path, ExrType type, const std::string& layer) {
+  Planes<3> color = make_planes<3>({3, 2});
+  Plane<float> alpha({3, 2}), other({3, 2});
+  for (int c = 0; c < 3; ++c) {
+    for (int y = 0; y < 2; ++y) {
+      for (int x = 0; x < 3; ++x) {
+        color[c](x, y) = 0.25f * static_cast<float>(1 + c) + static_cast<float>(10 * y + x);
+      }
+    }
+  }
+  alpha.fill(0.5f);
+  other.fill(77.0f);
+  const ExrChannel channels[] = {
+      {"A.depth", ExrType::kFloat, &other}, {layer + "R", type, &color[0]},
+      {layer + "G", type, &color[1]},       {layer + "B", type, &color[2]},
+      {layer + "A", type, &alpha},          {"zz.R", ExrType::kHalf, &other}};
+  write_exr(path, channels, {});
+}
+
+TEST_F(SceneFile, EnvironmentsInExrFilesAreReadAsTheyAre) {
+  for (const ExrType type : {ExrType::kHalf, ExrType::kFloat}) {
+    for (const char* layer : {"", "View.Combined."}) {
+      write_exr_map(folder_ / "sky.exr", type, layer);
+      const Environment map = read_environment(folder_ / "sky.exr", 2.0f);
+      ASSERT_EQ(map.extent, (Extent{3, 2}));
+      EXPECT_EQ(map.radiance[0], glm::vec3(0.5f, 1.0f, 1.5f));
+      EXPECT_EQ(map.radiance[5], glm::vec3(24.5f, 25.0f, 25.5f));
+    }
+  }
+}
+
+TEST_F(SceneFile, BaseColorsInExrFilesAreLinear) {
+  write_exr_map(folder_ / "paint.exr", ExrType::kFloat, "");
+  const Texture texture = read_texture(folder_ / "paint.exr");
+  ASSERT_EQ(texture.extent, (Extent{3, 2}));
+  // sRGB of 0.25, 0.5 and 0.75.
+  EXPECT_THAT(std::vector<int>(texture.rgba.begin(), texture.rgba.begin() + 4),
+              ElementsAre(137, 188, 225, 128));
+  EXPECT_THAT(std::vector<int>(texture.rgba.end() - 4, texture.rgba.end()),
+              ElementsAre(255, 255, 255, 128));
 }
 
 TEST_F(SceneFile, EnvironmentReplacesSunAndSkyOnRequest) {
