@@ -57,7 +57,8 @@ Evaluation measure(const ComparePlan& plan, const Contender& contender, float ex
   options.layer = plan.recorded->layer;
   options.frames = format_frame_range(plan.measured);
   options.metrics.exposure = exposure;
-  options.skips_bad = true;  // pixels with NaN or Inf; they are counted
+  options.takes_all_pixels = true;  // a beauty has light in front of the sky as well
+  options.skips_bad = true;         // pixels with NaN or Inf; they are counted
   Evaluation found = evaluate(options);
   if (!found.skipped.empty()) throw std::runtime_error(found.skipped.front().reason);
   return found;

@@ -24,8 +24,9 @@ struct EvaluateOptions {
   /// First frame of a light step; absent: as the file of the first frame has it
   /// (`eigenlight.perturb`), in the test, else in the reference.
   std::optional<int> step;
-  bool skips_bad = false;  ///< leave bad frames and pixels out, and count them
-  MetricOptions metrics;   ///< is_display is set by the file names
+  bool takes_all_pixels = false;  ///< whatever the files know of surfaces
+  bool skips_bad = false;         ///< leave bad frames and pixels out, and count them
+  MetricOptions metrics;          ///< is_display is set by the file names
 };
 
 /// Something that was left out on request.

@@ -214,7 +214,8 @@ LoadedFrame load_frame(int frame, const FramePaths& paths, const EvaluateOptions
   mark_finite(sources, out);
   check_windows(sources, out);
   note_colors(sources, out);
-  if (!mark_surface(test, out, "test") && !mark_surface(reference, out, "reference")) {
+  if (options.takes_all_pixels ||
+      (!mark_surface(test, out, "test") && !mark_surface(reference, out, "reference"))) {
     mark(out.images.bits, kSurfaceBit, [](int, int) { return true; });
     out.surface_from = "all pixels";
   }

@@ -40,20 +40,30 @@ class CompareRecorded : public testing::Test {
   [[nodiscard]] fs::path path(const std::string& name, int frame) const {
     return dir_ / (name + ".000" + std::to_string(frame) + ".exr");
   }
-  // Two halves: the truth with noise of their own.
+  // Two halves: the truth with noise of their own; no surface in the left half, says the file.
   void write_reference(const FakeShot& shot, int frame) const {
-    ShotChannels file(shot, frame);
+    std::vector<Plane<float>> planes;
+    std::vector<std::string> names;
+    Plane<std::uint32_t> id(shot.extent);
     for (const std::uint32_t half : {1u, 2u}) {
+      const std::uint32_t key = 7000 * half + static_cast<std::uint32_t>(frame);
       for (int c = 0; c < 3; ++c) {
-        file.add(std::string(half == 1 ? "HalfA" : "HalfB") + ".Combined." + "RGB"[c],
-                 [&](int x, int y, int) {
-                   const std::uint32_t key = 7000 * half + static_cast<std::uint32_t>(frame);
-                   return shot.beauty(frame, x, y, c) *
-                          (0.95f + 0.1f * to_unit(hash_key(key, x, y)));
-                 });
+        planes.emplace_back(shot.extent);
+        names.push_back(std::string(half == 1 ? "HalfA" : "HalfB") + ".Combined." + "RGB"[c]);
+        for (int y = 0; y < shot.extent.height; ++y) {
+          for (int x = 0; x < shot.extent.width; ++x) {
+            const float noise = 0.95f + 0.1f * to_unit(hash_key(key, x, y));
+            planes.back()(x, y) = shot.beauty(frame, x, y, c) * noise;
+            id(x, y) = x < shot.extent.width / 2 ? 0 : 1;
+          }
+        }
       }
     }
-    file.write(path("ref", frame));
+    std::vector<ExrChannel> channels{{"id", ExrType::kUint, &id}};
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+      channels.push_back({names[i], ExrType::kFloat, &planes[i]});
+    }
+    write_exr(path("ref", frame), channels, {});
   }
   [[nodiscard]] std::string reference(const std::string& half) const {
     return (dir_ / "ref.####.exr:").string() + half;
@@ -84,6 +94,7 @@ class CompareRecorded : public testing::Test {
     options.reference_b = reference("HalfB");
     options.layer = "color";
     options.frames = "3,4,6";
+    options.takes_all_pixels = true;
     return *evaluate(options).mean[0][metric];
   }
 
