@@ -38,6 +38,11 @@ void add_file_options(CLI::App& command, DenoiseCommand& options) {
   command.add_flag("--skip-existing", options.settings.skip_existing,
                    "Do not write frames again whose output is complete");
   command.add_flag("--resume", options.settings.resume, "Go on where an interrupted run stopped");
+  command
+      .add_option("--checkpoint", options.settings.checkpoint_seconds,
+                  "Seconds between checkpoints, which hold the whole history")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str();
   command.add_flag("--page", options.page,
                    "Write page/index.html beside the outputs: noisy beside denoised frames, "
                    "layers, times");

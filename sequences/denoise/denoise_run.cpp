@@ -23,8 +23,6 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-// A checkpoint holds the whole history. Once in ten seconds keeps its cost under a few percent.
-constexpr std::chrono::seconds kCheckpointInterval{10};
 // Frames that wait between reading, computing and writing. One is enough to overlap them.
 constexpr std::size_t kWaiting = 1;
 
@@ -222,6 +220,7 @@ FinishedFrame Run::denoise(ReadyFrame ready, std::size_t index) {
 }
 
 void Run::denoise_frames() {
+  const std::chrono::duration<double> interval(settings_.checkpoint_seconds);
   auto saved = Clock::now();
   bool stops = false;
   for (std::size_t i = position_; i < plan_.frames.size() && !stops; ++i) {
@@ -231,7 +230,7 @@ void Run::denoise_frames() {
     finished.is_written = !settings_.skip_existing || !is_complete(i);
     stops = callbacks_.interrupted();
     const bool is_last = i + 1 == plan_.frames.size();
-    if (!is_last && (stops || Clock::now() - saved > kCheckpointInterval)) {
+    if (!is_last && (stops || Clock::now() - saved >= interval)) {
       finished.state = state();
       saved = Clock::now();
     }

@@ -21,8 +21,9 @@ struct DenoiseSettings {
   LayerChoice layers;
   GuideChoice guides;
   std::string cuts;  ///< frames at which a new shot begins, as parse_frame_range() takes them
-  bool skip_existing = false;  ///< frames whose outputs are complete are not written again
-  bool resume = false;         ///< go on from the checkpoint of an interrupted run
+  bool skip_existing = false;        ///< frames whose outputs are complete are not written again
+  bool resume = false;               ///< go on from the checkpoint of an interrupted run
+  double checkpoint_seconds = 10.0;  ///< between two checkpoints, >= 0
 };
 
 /// All that is known before the first frame is denoised.
@@ -58,9 +59,9 @@ struct DenoiseCallbacks {
 
 /// Denoises all frames of a plan. Stops after the frame at hand when interrupted; files are
 /// complete or absent at any time. A checkpoint beside the outputs, `.FIRST.eigenlight-state`
-/// (FIRST: name of the first output), is brought up to date every ten seconds and removed at the
-/// end. Throws what reading and writing throw, and CheckpointError if `resume` finds a checkpoint
-/// of another run.
+/// (FIRST: name of the first output), is brought up to date every checkpoint_seconds and removed at
+/// the end. Throws what reading and writing throw, and CheckpointError if `resume` finds a
+/// checkpoint of another run.
 [[nodiscard]] DenoiseTotals run_denoising(const DenoiseSettings& settings, const DenoisePlan& plan,
                                           const DenoiseCallbacks& callbacks);
 
