@@ -35,10 +35,10 @@ Json stamp(const fs::path& path) {
   return {path.string(), bytes, fs::last_write_time(path, error).time_since_epoch().count()};
 }
 
-// What OIDN and its like are trained on, before what a picture is made of.
-Planes<3> read_guide(const std::vector<fs::path>& files, const char* for_denoisers,
-                     const char* of_surfaces, const ExternalMethod& method, const char* place) {
-  for (const char* layer : {for_denoisers, of_surfaces}) {
+// The layer `best`, else `other`, of any of the inputs.
+Planes<3> read_guide(const std::vector<fs::path>& files, const char* best, const char* other,
+                     const ExternalMethod& method, const char* place) {
+  for (const char* layer : {best, other}) {
     for (const fs::path& path : files) {
       const ExrReader reader(path);
       if (reader.has_layer(layer)) return reader.read_planes<3>(layer);
@@ -178,7 +178,7 @@ bool RecordedRun::run_program(const Contender& contender, const RunControl& cont
       albedo = read_guide(files.inputs, "Denoising Albedo", "albedo", method, "albedo");
     }
     if (method.wants("normal")) {
-      normal = read_guide(files.inputs, "Denoising Normal", "N", method, "normal");
+      normal = read_guide(files.inputs, "N", "Denoising Normal", method, "normal");
     }
     run.add({files.frame, color, albedo, normal});
     if (control.stops()) return false;

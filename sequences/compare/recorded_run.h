@@ -25,8 +25,11 @@ namespace eigenlight {
 ///   eigenlight   run_denoising(), as `eigenlight denoise` does; it goes on where it was stopped
 ///   noisy        the inputs as they are
 ///   others       RecordedMethod
-///   programs     ExternalRun: {color} is the measured layer, {albedo} and {normal} are those that
-///                the renderer made for denoisers where the files have them, else those of surfaces
+///   programs     ExternalRun: {color} is the measured layer; {albedo} is what the renderer made
+///   for
+///                denoisers where the files have it, else that of diffuse surfaces; {normal} in
+///                world space where the files have it. Both choices are the best for OIDN on
+///                frames of Cycles.
 /// The measured layer of each measured frame is written to recorded_folder(), and measured there by
 /// evaluate(). Cells: files_ms is files_cpu_ms() and denoise_ms all other CPU time of ours; of
 /// programs files_ms is 0 and denoise_ms what their cost is (external_method.h).
