@@ -15,8 +15,8 @@ namespace eigenlight {
 ///   frames/       the measured frames, SCENE/METHOD/frame.####.exr, at the sample count shown
 ///   cells/        results so far, each under the hash of all that decides it, the program included
 /// EXR patterns in place of scenes: compare_recorded.h. With --paper it reruns a paper instead
-/// (compare_paper.h). Throws std::invalid_argument for a bad
-/// option, std::runtime_error for all other errors.
+/// (compare_paper.h). Throws std::invalid_argument for a bad option, std::runtime_error for all
+/// other errors.
 [[nodiscard]] Command add_compare_command(CLI::App& app);
 
 }  // namespace eigenlight
