@@ -14,13 +14,6 @@ constexpr std::array<float, 3> kBinomial{0.25f, 0.5f, 0.25f};
 constexpr std::array<float, 5> kSpline{1.0f / 16, 1.0f / 4, 3.0f / 8, 1.0f / 4, 1.0f / 16};
 constexpr std::size_t kGuides = 7;
 
-// Close to exp(-x), without a call: loops over pixels become vector code.
-inline float falloff(float x) {
-  const float a = std::max(1.0f - 0.125f * x, 0.0f);
-  const float b = a * a, c = b * b;
-  return c * c;
-}
-
 // A neighbor's offset and what it shares with all layers.
 struct Tap {
   int dx, dy;
@@ -89,9 +82,6 @@ void geometry(const std::vector<Plane<float>>& guides, const Plane<float>& surfa
 void SoftAtrousOptions::validate() const {
   EL_CHECK(passes >= 1 && passes <= 6, "passes {}: expected 1 to 6", passes);
   EL_CHECK(radius == 1 || radius == 2, "radius {}: expected 1 or 2", radius);
-  EL_CHECK(normal > 0.0f && normal <= 10.0f, "normal {}: expected (0, 10]", normal);
-  EL_CHECK(color > 0.0f && color <= 10.0f, "color {}: expected (0, 10]", color);
-  EL_CHECK(depth > 0.0f && depth <= 10.0f, "depth {}: expected (0, 10]", depth);
 }
 
 SoftAtrous::SoftAtrous(Extent extent, const SoftAtrousOptions& options)
@@ -101,23 +91,17 @@ SoftAtrous::SoftAtrous(Extent extent, const SoftAtrousOptions& options)
   for (int i = 0; i < 4; ++i) near_.emplace_back(extent);
 }
 
-void SoftAtrous::prepare(const FrameInput& frame, const Planes<3>& mean_normal) {
-  const Planes<3>& normal = mean_normal[0].empty() ? frame.surface.normal : mean_normal;
-  EL_CHECK(frame.extent() == extent_ && normal[0].extent() == extent_,
-           "frame of {}x{} pixels, expected {}x{}", frame.extent().width, frame.extent().height,
-           extent_.width, extent_.height);
+void SoftAtrous::prepare(const Plane<PackedGuide>& guides) {
+  EL_CHECK(guides.extent() == extent_, "guides of {}x{} pixels, expected {}x{}", guides.width(),
+           guides.height(), extent_.width, extent_.height);
   parallel_for(extent_.height, [&](int y) {
     for (int x = 0; x < extent_.width; ++x) {
-      const float depth = frame.surface.depth(x, y);
-      const bool is_surface = frame.surface.id(x, y) != 0 && std::isfinite(depth) && depth > 0.0f;
-      surface_(x, y) = is_surface ? 1.0f : 0.0f;
-      for (std::size_t c = 0; c < 3; ++c) {
-        const float n = normal[c](x, y), a = frame.surface.albedo[c](x, y);
-        guides_[c](x, y) = std::isfinite(n) ? n / options_.normal : 0.0f;
-        // Colors above 1 are those of lamps; they differ enough.
-        guides_[3 + c](x, y) = std::isfinite(a) ? std::clamp(a, 0.0f, 2.0f) / options_.color : 0.0f;
+      const PackedGuide& guide = guides(x, y);
+      surface_(x, y) = shows_surface(guide) ? 1.0f : 0.0f;
+      for (std::size_t i = 0; i < 6; ++i) {
+        guides_[i](x, y) = static_cast<float>(guide.normal_color[i]) / kGuideSteps;
       }
-      guides_[6](x, y) = is_surface ? std::log(depth) / options_.depth : 0.0f;
+      guides_[6](x, y) = static_cast<float>(guide.depth) / kGuideSteps;
     }
   });
   find_near();
@@ -138,7 +122,7 @@ void SoftAtrous::find_near() {
   });
 }
 
-void SoftAtrous::exclude_bad(const FrameInput& frame, std::span<const SoftLayer> layers) {
+void SoftAtrous::exclude_bad(std::span<const SoftLayer> layers) {
   buffers_.resize(layers.size());
   for (std::size_t i = 0; i < layers.size(); ++i) {
     Buffers& buffer = buffers_[i];
@@ -152,7 +136,7 @@ void SoftAtrous::exclude_bad(const FrameInput& frame, std::span<const SoftLayer>
         Planes<3>& light = *layers[i].light;
         float& variance = (*layers[i].variance)(x, y);
         const bool is_good = std::isfinite(light[0](x, y) + light[1](x, y) + light[2](x, y)) &&
-                             std::isfinite(variance) && frame.surface.id(x, y) != 0;
+                             std::isfinite(variance) && surface_(x, y) != 0.0f;
         buffer.usable(x, y) = is_good ? 1.0f : 0.0f;
         if (is_good) continue;
         for (auto& plane : light) plane(x, y) = 0.0f;
@@ -240,10 +224,9 @@ void SoftAtrous::filter_row(std::span<const SoftLayer> layers, int pass, int y) 
   for (std::size_t i = 0; i < layers.size(); ++i) finish_row(buffers_[i], y);
 }
 
-void SoftAtrous::process(const FrameInput& frame, const Planes<3>& mean_normal,
-                         std::span<const SoftLayer> layers) {
-  prepare(frame, mean_normal);
-  exclude_bad(frame, layers);
+void SoftAtrous::process(const Plane<PackedGuide>& guides, std::span<const SoftLayer> layers) {
+  prepare(guides);
+  exclude_bad(layers);
   for (int pass = 0; pass < options_.passes; ++pass) {
     parallel_for(extent_.height, [&](int y) {
       for (std::size_t i = 0; i < layers.size(); ++i) find_means(layers[i], buffers_[i], y);

@@ -4,17 +4,14 @@
 #include <span>
 #include <vector>
 
-#include "frame/frame.h"
 #include "frame/tiles.h"
+#include "spatial/packed_guides.h"
 
 namespace eigenlight {
 
 struct SoftAtrousOptions {
   int passes = 4;  ///< [1, 6]; pass i reaches radius * 2^i pixels
   int radius = 2;  ///< 1: 3 x 3 taps, 2: 5 x 5
-  /// (0, 10] Differences of guides that weigh a neighbor by 1/e: of mean normals, of color, and of
-  /// the logarithm of depth. Found on two Cycles shots at 4 samples a pixel.
-  float normal = 1.0f, color = 0.5f, depth = 0.5f;
 
   void validate() const;  ///< throws std::invalid_argument naming the field
 };
@@ -50,10 +47,8 @@ class SoftAtrous {
  public:
   SoftAtrous(Extent extent, const SoftAtrousOptions& options);
 
-  /// `mean_normal` may be empty: then it is the frame's normal. Throws std::invalid_argument if
-  /// extents differ.
-  void process(const FrameInput& frame, const Planes<3>& mean_normal,
-               std::span<const SoftLayer> layers);
+  /// Throws std::invalid_argument if extents differ.
+  void process(const Plane<PackedGuide>& guides, std::span<const SoftLayer> layers);
 
  private:
   struct Buffers {
@@ -68,9 +63,9 @@ class SoftAtrous {
     const float* geometry;
   };
 
-  void prepare(const FrameInput& frame, const Planes<3>& mean_normal);
+  void prepare(const Plane<PackedGuide>& guides);
   void find_near();
-  void exclude_bad(const FrameInput& frame, std::span<const SoftLayer> layers);
+  void exclude_bad(std::span<const SoftLayer> layers);
   void find_means(const SoftLayer& layer, Buffers& buffer, int y) const;
   void filter_row(std::span<const SoftLayer> layers, int pass, int y);
   void start_row(const SoftLayer& layer, Buffers& out, int y) const;

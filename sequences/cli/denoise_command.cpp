@@ -34,6 +34,11 @@ void add_file_options(CLI::App& command, DenoiseCommand& options) {
                   "Folder for files of the same names; or a pattern, or a file, that ends in .exr")
       ->required();
   command.add_option("--frames", files.frames, "Such as 7, 1-24 or 1-100x5 [all that exist]");
+  command
+      .add_option("--lookahead", options.settings.lookahead,
+                  "How many later frames may help a frame; 0: none")
+      ->check(CLI::Range(0, 64))
+      ->capture_default_str();
   command.add_flag("--overwrite", files.overwrite, "Allow that an output is an input");
   command.add_flag("--skip-existing", options.settings.skip_existing,
                    "Do not write frames again whose output is complete");

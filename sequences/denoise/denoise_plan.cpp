@@ -59,6 +59,7 @@ DenoisePlan plan_denoising(const DenoiseSettings& settings) {
   DenoisePlan plan;
   plan.frames = find_sequence(settings.files);
   plan.cuts = parse_cuts(settings.cuts);
+  plan.lookahead = settings.lookahead;
   const std::vector<FrameHeaders> headers = read_headers(plan.frames);
   plan.layers = find_layers(headers.front(), settings.layers);
   plan.canvas = find_canvas(headers, plan.layers);

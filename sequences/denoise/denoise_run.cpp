@@ -4,17 +4,16 @@
 
 #include <algorithm>
 #include <chrono>
+#include <deque>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <thread>
 
-#include "sequences/denoise/bounded_queue.h"
+#include "sequences/denoise/output_writer.h"
 #include "sequences/denoise/ready_frame.h"
 #include "sequences/exr/exr_complete.h"
-#include "sequences/exr/exr_rewrite.h"
 #include "sequences/files/checkpoint.h"
-#include "sequences/files/directory.h"
-#include "temporal/eigen/soft_denoiser.h"
+#include "temporal/gather/window_denoiser.h"
 #include "temporal/stage_clock.h"
 
 namespace eigenlight {
@@ -22,19 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
-
-// Frames that wait between reading, computing and writing. One is enough to overlap them.
-constexpr std::size_t kWaiting = 1;
-
-// A frame to be written.
-struct FinishedFrame {
-  std::shared_ptr<const RawFrame> raw;
-  std::vector<std::vector<NewChannel>> outputs;  // for each input
-  std::size_t index = 0;
-  bool is_written = true;  // its outputs are not there yet
-  DenoiseRecord record;
-  std::vector<char> state;  // of the denoisers behind this frame; empty: no checkpoint is due
-};
 
 // What makes two runs the same run.
 std::string describe(const DenoiseSettings& settings, const DenoisePlan& plan) {
@@ -46,134 +32,64 @@ std::string describe(const DenoiseSettings& settings, const DenoisePlan& plan) {
   json["alpha"] = settings.layers.denoises_alpha;
   json["motion"] = settings.guides.motion;
   json["camera"] = settings.guides.camera;
+  json["lookahead"] = plan.lookahead;
   json["cuts"] = plan.cuts;
   json["canvas"] = {plan.canvas.x, plan.canvas.y, plan.canvas.width, plan.canvas.height};
   for (const FrameFiles& frame : plan.frames) json["frames"].push_back(frame.frame);
   return json.dump();
 }
 
-fs::path checkpoint_path(const DenoisePlan& plan) {
-  // Other shots, and other parts of this one, may go to the same folder at the same time.
-  const fs::path& first = plan.frames.front().outputs.front();
-  return first.parent_path() / fmt::format(".{}.eigenlight-state", first.filename().string());
-}
+// A state of the denoisers, until the frames before it are written.
+struct Snapshot {
+  std::size_t frame = 0;  // the last one that was pushed
+  std::vector<char> state;
+};
 
 class Run {
  public:
   Run(const DenoiseSettings& settings, const DenoisePlan& plan, const DenoiseCallbacks& callbacks)
-      : settings_(settings), plan_(plan), callbacks_(callbacks), ready_(kWaiting), done_(kWaiting) {
+      : settings_(settings), plan_(plan), callbacks_(callbacks), ready_(kWaiting) {
     description_ = describe(settings, plan);
+    WindowOptions options;
+    options.ahead = plan.lookahead;
     for (std::size_t v = 0; v < plan.layers.views.size(); ++v) {
       const ViewPlan& view = plan.layers.views[v];
       builders_.emplace_back(view, plan.readings[v], plan.canvas, plan.cuts);
-      denoisers_.push_back(std::make_unique<SoftDenoiser>(
+      denoisers_.push_back(std::make_unique<WindowDenoiser>(
           DenoiserOptions{.extent = {plan.canvas.width, plan.canvas.height},
-                          .layers = static_cast<int>(view.lights.size())}));
+                          .layers = static_cast<int>(view.lights.size())},
+          options));
     }
   }
 
   DenoiseTotals run();
 
  private:
-  void read_frames();
-  void write_frames();
-  void denoise_frames();
-  FinishedFrame denoise(ReadyFrame ready, std::size_t index);
-  void write_frame(const FinishedFrame& frame, DenoiseRecord& record);
   void load();
+  void read_frames();
+  [[nodiscard]] std::size_t first_read() const;
+  void denoise_frames(OutputWriter& writer);
+  [[nodiscard]] bool push_frame();
+  void take_snapshot();
+  FinishedFrame denoise(std::size_t index);
   [[nodiscard]] std::vector<char> state() const;
   [[nodiscard]] bool is_complete(std::size_t index) const;
-  void add_notes(const std::vector<std::string>& lines);
   void finish();
 
   const DenoiseSettings& settings_;
   const DenoisePlan& plan_;
   const DenoiseCallbacks& callbacks_;
   std::vector<FrameBuilder> builders_;
-  std::vector<std::unique_ptr<SoftDenoiser>> denoisers_;
+  std::vector<std::unique_ptr<WindowDenoiser>> denoisers_;
   BoundedQueue<ReadyFrame> ready_;
-  BoundedQueue<FinishedFrame> done_;
-  std::size_t position_ = 0;  // frames that were complete before
+  std::deque<ReadyFrame> pushed_;  // frames that the denoisers hold and have not denoised
+  std::size_t position_ = 0;       // frames that were complete before
+  std::size_t next_push_ = 0;
+  Snapshot snapshot_;
+  Clock::time_point saved_ = Clock::now();
   std::string description_;
   DenoiseTotals totals_;  // the writer's while it runs
 };
-
-void Run::read_frames() {
-  try {
-    // The frame before is read again for what motion and depth say of it.
-    const std::size_t start = position_ > 0 ? position_ - 1 : 0;
-    for (std::size_t i = start; i < plan_.frames.size(); ++i) {
-      StageClock clock;
-      ReadyFrame ready;
-      ready.raw = std::make_shared<const RawFrame>(
-          read_raw_frame(plan_.frames[i], plan_.layers, plan_.canvas));
-      for (FrameBuilder& builder : builders_) {
-        ready.views.push_back(std::make_unique<Frame>());
-        builder.build(ready.raw, *ready.views.back());
-      }
-      ready.read_ms = clock.lap().wall_ms;
-      if (i >= position_ && !ready_.push(std::move(ready))) return;
-    }
-    ready_.close();
-  } catch (...) {
-    ready_.close(std::current_exception());
-  }
-}
-
-void Run::add_notes(const std::vector<std::string>& lines) {
-  for (const std::string& line : lines) {
-    if (std::find(totals_.notes.begin(), totals_.notes.end(), line) == totals_.notes.end()) {
-      totals_.notes.push_back(line);
-    }
-  }
-}
-
-void Run::write_frame(const FinishedFrame& frame, DenoiseRecord& record) {
-  StageClock clock;
-  const FrameFiles& paths = plan_.frames[frame.index];
-  for (std::size_t i = 0; i < paths.outputs.size(); ++i) {
-    std::vector<ExrReplacement> replacements;
-    for (const NewChannel& channel : frame.outputs[i]) {
-      replacements.push_back({channel.channel, &channel.values});
-    }
-    const fs::path folder = paths.outputs[i].parent_path();
-    if (!folder.empty()) make_directory(folder);
-    const ExrRewriteReport report =
-        rewrite_exr(*frame.raw->files[i], paths.outputs[i], replacements);
-    totals_.clamped += report.values.clamped;
-    record.clamped += report.values.clamped;
-    add_notes(report.recompressed);
-    add_notes(report.levels);
-  }
-  ++totals_.frames;
-  record.write_ms = clock.lap().wall_ms;
-}
-
-void Run::write_frames() {
-  try {
-    while (const std::optional<FinishedFrame> frame = done_.pop()) {
-      DenoiseRecord record = frame->record;
-      if (frame->is_written) {
-        write_frame(*frame, record);
-      } else {
-        ++totals_.skipped;
-      }
-      if (callbacks_.record) callbacks_.record(record);
-      if (!frame->state.empty()) {
-        write_checkpoint(checkpoint_path(plan_), {description_, frame->index + 1, frame->state});
-      }
-      callbacks_.frame_done(plan_.frames[frame->index].frame);
-    }
-  } catch (...) {
-    done_.close(std::current_exception());
-  }
-}
-
-std::vector<char> Run::state() const {
-  StateWriter writer;
-  for (const auto& denoiser : denoisers_) denoiser->save(writer);
-  return writer.bytes();
-}
 
 void Run::load() {
   const fs::path path = checkpoint_path(plan_);
@@ -193,48 +109,115 @@ void Run::load() {
   position_ = checkpoint.position;
 }
 
+// Frames before the first one to be denoised are read again: the denoisers gather from them, and
+// builders compare a frame with the one before.
+std::size_t Run::first_read() const {
+  const auto past = static_cast<std::size_t>(std::max(denoisers_.front()->past(), 1));
+  return position_ - std::min(position_, past);
+}
+
+void Run::read_frames() {
+  try {
+    for (std::size_t i = first_read(); i < plan_.frames.size(); ++i) {
+      StageClock clock;
+      ReadyFrame ready;
+      ready.raw = std::make_shared<const RawFrame>(
+          read_raw_frame(plan_.frames[i], plan_.layers, plan_.canvas));
+      for (FrameBuilder& builder : builders_) {
+        ready.views.push_back(std::make_unique<Frame>());
+        builder.build(ready.raw, *ready.views.back());
+      }
+      ready.read_ms = clock.lap().wall_ms;
+      if (!ready_.push(std::move(ready))) return;
+    }
+    ready_.close();
+  } catch (...) {
+    ready_.close(std::current_exception());
+  }
+}
+
+std::vector<char> Run::state() const {
+  StateWriter writer;
+  for (const auto& denoiser : denoisers_) denoiser->save(writer);
+  return writer.bytes();
+}
+
 bool Run::is_complete(std::size_t index) const {
   const std::vector<fs::path>& outputs = plan_.frames[index].outputs;
   return std::all_of(outputs.begin(), outputs.end(), is_complete_exr);
 }
 
-FinishedFrame Run::denoise(ReadyFrame ready, std::size_t index) {
+// False where the reader has stopped.
+bool Run::push_frame() {
+  std::optional<ReadyFrame> ready = ready_.pop();
+  if (!ready) return false;
+  for (std::size_t v = 0; v < denoisers_.size(); ++v) {
+    if (next_push_ < position_) {
+      denoisers_[v]->push_past(*ready->views[v]);
+    } else {
+      denoisers_[v]->push(*ready->views[v]);
+    }
+  }
+  if (next_push_ >= position_) {
+    ready->views.clear();
+    pushed_.push_back(std::move(*ready));
+    take_snapshot();
+  }
+  ++next_push_;
+  if (next_push_ == plan_.frames.size()) {
+    for (const auto& denoiser : denoisers_) denoiser->finish();
+  }
+  return true;
+}
+
+// The denoisers are ahead of the files by the lookahead: their state becomes a checkpoint when the
+// frame that was pushed last is written.
+void Run::take_snapshot() {
+  const std::chrono::duration<double> interval(settings_.checkpoint_seconds);
+  if (!snapshot_.state.empty() || Clock::now() - saved_ < interval) return;
+  snapshot_ = {next_push_, state()};
+  saved_ = Clock::now();
+}
+
+FinishedFrame Run::denoise(std::size_t index) {
+  ReadyFrame& ready = pushed_.front();
   FinishedFrame finished;
-  finished.raw = ready.raw;
+  finished.raw = std::move(ready.raw);
   finished.index = index;
   finished.record.read_ms = ready.read_ms;
   finished.outputs.resize(plan_.frames[index].inputs.size());
   for (std::size_t v = 0; v < denoisers_.size(); ++v) {
-    ReadySource source;
-    source.set(ready.views[v].get());
-    SoftDenoiser& denoiser = *denoisers_[v];
-    if (!denoiser.step(source)) throw std::logic_error("a frame was lost");
+    WindowDenoiser& denoiser = *denoisers_[v];
+    if (!denoiser.step()) throw std::logic_error("a frame was lost");
     add_report(denoiser.report(), finished.record);
     StageClock clock;
     std::vector<const Planes<3>*> lights;
     for (int i = 0; i < denoiser.layers(); ++i) lights.push_back(&denoiser.output(i));
-    compose_view(*ready.raw, plan_.layers.views[v], plan_.canvas, lights, finished.outputs);
+    compose_view(*finished.raw, plan_.layers.views[v], plan_.canvas, lights, finished.outputs);
     finished.record.compose_ms += clock.lap().wall_ms;
   }
+  pushed_.pop_front();
   return finished;
 }
 
-void Run::denoise_frames() {
-  const std::chrono::duration<double> interval(settings_.checkpoint_seconds);
-  auto saved = Clock::now();
+void Run::denoise_frames(OutputWriter& writer) {
+  const auto ahead = static_cast<std::size_t>(plan_.lookahead);
+  next_push_ = first_read();
   bool stops = false;
   for (std::size_t i = position_; i < plan_.frames.size() && !stops; ++i) {
-    std::optional<ReadyFrame> ready = ready_.pop();
-    if (!ready) break;
-    FinishedFrame finished = denoise(std::move(*ready), i);
+    while (next_push_ < plan_.frames.size() && next_push_ <= i + ahead) {
+      if (!push_frame()) return;
+    }
+    FinishedFrame finished = denoise(i);
     finished.is_written = !settings_.skip_existing || !is_complete(i);
     stops = callbacks_.interrupted();
     const bool is_last = i + 1 == plan_.frames.size();
-    if (!is_last && (stops || Clock::now() - saved >= interval)) {
+    if (!is_last && stops && next_push_ == i + 1) {
       finished.state = state();
-      saved = Clock::now();
+    } else if (!is_last && !snapshot_.state.empty() && snapshot_.frame == i) {
+      finished.state = std::exchange(snapshot_.state, {});
     }
-    if (!done_.push(std::move(finished))) break;
+    if (!writer.push(std::move(finished))) return;
   }
 }
 
@@ -254,20 +237,18 @@ void Run::finish() {
 DenoiseTotals Run::run() {
   const auto start = Clock::now();
   load();
+  OutputWriter writer(plan_, callbacks_, description_, totals_);
   std::thread reader([this] { read_frames(); });
-  std::thread writer([this] { write_frames(); });
   std::exception_ptr error;
   try {
-    denoise_frames();
+    denoise_frames(writer);
   } catch (...) {
     error = std::current_exception();
   }
   ready_.close();
-  done_.close();
   reader.join();
-  writer.join();
   if (error) std::rethrow_exception(error);
-  (void)done_.pop();  // rethrows what stopped the writer
+  writer.finish();
   finish();
   totals_.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   return totals_;

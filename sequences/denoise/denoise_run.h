@@ -20,7 +20,9 @@ struct DenoiseSettings {
   FileChoice files;
   LayerChoice layers;
   GuideChoice guides;
-  std::string cuts;  ///< frames at which a new shot begins, as parse_frame_range() takes them
+  std::string cuts;   ///< frames at which a new shot begins, as parse_frame_range() takes them
+  int lookahead = 8;  ///< [0, 64] later frames that may help a frame
+  std::uint64_t max_memory = 0;      ///< bytes; 0: what the machine has to give
   bool skip_existing = false;        ///< frames whose outputs are complete are not written again
   bool resume = false;               ///< go on from the checkpoint of an interrupted run
   double checkpoint_seconds = 10.0;  ///< between two checkpoints, >= 0
@@ -33,6 +35,7 @@ struct DenoisePlan {
   ExrWindow canvas;
   std::vector<Readings> readings;  ///< of each view
   std::vector<int> cuts;
+  int lookahead = 0;  ///< as asked for, or less where memory does not suffice
   std::vector<std::string> notes, warnings;
 };
 

@@ -30,6 +30,8 @@ class EigenDenoiser final : public Denoiser {
   [[nodiscard]] const FrameReport& report() const override { return report_; }
   /// Ages of the first layer.
   [[nodiscard]] const Plane<float>& age() const override { return layers_.front().age(); }
+  /// Frames that output(layer) holds.
+  [[nodiscard]] const Plane<float>& age(int layer) const { return at(layer).age(); }
   void reset() override { shared_.reset(); }
   void save(StateWriter& out) const override;
   void load(StateReader& in) override;
