@@ -39,6 +39,8 @@ void add_file_options(CLI::App& command, DenoiseCommand& options) {
                   "How many later frames may help a frame; 0: none")
       ->check(CLI::Range(0, 64))
       ->capture_default_str();
+  command.add_option("--max-memory", options.settings.max_memory,
+                     "Such as 8G: look ahead no farther than fits [four fifths of the machine's]");
   command.add_flag("--overwrite", files.overwrite, "Allow that an output is an input");
   command.add_flag("--skip-existing", options.settings.skip_existing,
                    "Do not write frames again whose output is complete");

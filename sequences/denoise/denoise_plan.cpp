@@ -6,8 +6,10 @@
 #include "frame/bad_file.h"
 #include "frame/check.h"
 #include "sequences/denoise/denoise_run.h"
+#include "sequences/denoise/memory_plan.h"
 #include "sequences/denoise/sum_check.h"
 #include "sequences/files/frame_range.h"
+#include "sequences/files/machine.h"
 
 namespace eigenlight {
 namespace {
@@ -53,18 +55,36 @@ std::vector<int> parse_cuts(const std::string& text) {
   return parse_frame_range(text);
 }
 
+void plan_lookahead(const DenoiseSettings& settings, DenoisePlan& plan) {
+  EL_CHECK(settings.lookahead >= 0 && settings.lookahead <= kMostLookahead,
+           "lookahead {}: expected 0 to {}", settings.lookahead, kMostLookahead);
+  const MemoryPlan memory = plan_memory(plan.layers);
+  const double most =
+      settings.max_memory.empty() ? 0.8 * machine_memory() : parse_memory(settings.max_memory);
+  plan.lookahead = fit_lookahead(memory, plan.canvas, settings.lookahead, most);
+  const double bytes = memory.bytes(plan.canvas, plan.lookahead);
+  plan.notes.push_back(
+      fmt::format("memory: about {:.1f} GB, {:.0f} bytes a pixel with {} frames of lookahead",
+                  bytes / (1024.0 * 1024.0 * 1024.0),
+                  memory.fixed + memory.per_frame * plan.lookahead, plan.lookahead));
+  if (plan.lookahead < settings.lookahead) {
+    plan.warnings.push_back(fmt::format("lookahead {} in place of {}: more does not fit the memory",
+                                        plan.lookahead, settings.lookahead));
+  }
+}
+
 }  // namespace
 
 DenoisePlan plan_denoising(const DenoiseSettings& settings) {
   DenoisePlan plan;
   plan.frames = find_sequence(settings.files);
   plan.cuts = parse_cuts(settings.cuts);
-  plan.lookahead = settings.lookahead;
   const std::vector<FrameHeaders> headers = read_headers(plan.frames);
   plan.layers = find_layers(headers.front(), settings.layers);
   plan.canvas = find_canvas(headers, plan.layers);
   check_layers(headers, plan.layers);
   check_canvas(plan.canvas, plan.frames);
+  plan_lookahead(settings, plan);
   std::vector<RawFrame> first;
   for (std::size_t i = 0; i < std::min(kFirstFrames, plan.frames.size()); ++i) {
     first.push_back(read_raw_frame(plan.frames[i], plan.layers, plan.canvas));

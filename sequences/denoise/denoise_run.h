@@ -15,14 +15,17 @@
 
 namespace eigenlight {
 
+/// Most later frames that may help a frame.
+inline constexpr int kMostLookahead = 64;
+
 /// What the user asks for.
 struct DenoiseSettings {
   FileChoice files;
   LayerChoice layers;
   GuideChoice guides;
-  std::string cuts;   ///< frames at which a new shot begins, as parse_frame_range() takes them
-  int lookahead = 8;  ///< [0, 64] later frames that may help a frame
-  std::uint64_t max_memory = 0;      ///< bytes; 0: what the machine has to give
+  std::string cuts;        ///< frames at which a new shot begins, as parse_frame_range() takes them
+  int lookahead = 8;       ///< [0, kMostLookahead] later frames that may help a frame
+  std::string max_memory;  ///< as parse_memory() takes it; empty: 4/5 of the machine's
   bool skip_existing = false;        ///< frames whose outputs are complete are not written again
   bool resume = false;               ///< go on from the checkpoint of an interrupted run
   double checkpoint_seconds = 10.0;  ///< between two checkpoints, >= 0

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "sequences/denoise/layer_plan.h"
 #include "sequences/denoise/sequence_files.h"
 #include "sequences/exr/exr_file.h"
+#include "sequences/layers/layer_plan.h"
 
 namespace eigenlight {
 

@@ -209,7 +209,7 @@ void FrameBuilder::build(const std::shared_ptr<const RawFrame>& raw, Frame& out)
   const Extent extent{canvas_.width, canvas_.height};
   const RawGuides guides = raw_guides(*raw, view_);
   out.lights.resize(view_.lights.size());
-  out.resize(extent);
+  out.resize_input(extent);
   out.index = raw->frame;
   out.is_static = false;
   out.spp = 1;

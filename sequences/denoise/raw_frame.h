@@ -8,9 +8,9 @@
 
 #include "frame/plane.h"
 #include "sequences/denoise/file_headers.h"
-#include "sequences/denoise/layer_plan.h"
 #include "sequences/denoise/sequence_files.h"
 #include "sequences/exr/exr_file.h"
+#include "sequences/layers/layer_plan.h"
 
 namespace eigenlight {
 

@@ -65,7 +65,7 @@ bool follow_link(const FrameLink& link, const Taps& taps, Place& place) {
 
 // What another frame says of one pixel's light.
 struct Candidate {
-  LightSample light;
+  RecordedLight light;
   float match, gain, trust;  // trust: weight by the change of light on the way
 };
 
@@ -76,9 +76,9 @@ struct Candidates {
 
 void add_candidate(const LightRecord& record, const Taps& taps, float gain, float trust,
                    Candidates& out) {
-  LightSample sum{};
+  RecordedLight sum{};
   for (std::size_t t = 0; t < 4; ++t) {
-    const LightSample& from = record(taps.x[t], taps.y[t]);
+    const RecordedLight& from = record(taps.x[t], taps.y[t]);
     const float w = taps.weight[t];
     sum.r += w * from.r;
     sum.g += w * from.g;
@@ -101,7 +101,7 @@ struct MeanNoise {
   float light = 0.0f, pilot = 0.0f;
 };
 
-MeanNoise mean_noise(const LightSample& own, const Candidates& found) {
+MeanNoise mean_noise(const RecordedLight& own, const Candidates& found) {
   float total = own.usable;
   MeanNoise noise{own.usable * own.noise, own.usable * own.pilot_variance};
   for (std::size_t i = 0; i < found.count; ++i) {
@@ -161,7 +161,7 @@ class Gatherer {
     }
   }
 
-  [[nodiscard]] float weight(const GatherLayer& layer, const LightSample& own,
+  [[nodiscard]] float weight(const GatherLayer& layer, const RecordedLight& own,
                              const Candidate& other, const MeanNoise& noise) const {
     if (layer.count || own.usable == 0.0f) return other.match * other.trust;
     const float d = other.light.pilot - own.pilot;
@@ -170,7 +170,7 @@ class Gatherer {
   }
 
   void merge(const GatherLayer& layer, int x, int y, const Candidates& found) const {
-    const LightSample& own = (*layer.own)(x, y);
+    const RecordedLight& own = (*layer.own)(x, y);
     const MeanNoise noise = mean_noise(own, found);
     Planes<3>& light = *layer.light;
     float r = light[0](x, y), g = light[1](x, y), b = light[2](x, y);

@@ -15,7 +15,7 @@ void write_record(const Planes<3>& light, const Planes<3>& pilot, const Plane<fl
   parallel_for(guides.height(), [&](int y) {
     for (int x = 0; x < guides.width(); ++x) {
       const float r = light[0](x, y), g = light[1](x, y), b = light[2](x, y);
-      LightSample& to = record(x, y);
+      RecordedLight& to = record(x, y);
       to = {};
       if (!shows_surface(guides(x, y)) || !std::isfinite(r + g + b)) continue;
       const float mean = luminance(pilot, x, y);

@@ -12,10 +12,10 @@ namespace eigenlight {
 /// filtered on its own, with its variance. noise: (luminance of light - pilot)^2, a sample of the
 /// variance of light that does not hold what the pilot resolves: edges of shadows. usable: 1, or 0
 /// where there is no surface or light is not finite, and all others are 0.
-struct LightSample {
+struct RecordedLight {
   float r, g, b, pilot, pilot_variance, noise, usable, unused;
 };
-using LightRecord = Plane<LightSample>;
+using LightRecord = Plane<RecordedLight>;
 
 /// Makes the records of all layers of a frame.
 class LightRecorder {

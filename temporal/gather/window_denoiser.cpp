@@ -201,7 +201,7 @@ void WindowDenoiser::start_output(const Record& record, std::size_t layer) {
   const LightRecord& own = record.lights[layer];
   parallel_for(own.height(), [&](int y) {
     for (int x = 0; x < own.width(); ++x) {
-      const LightSample& from = own(x, y);
+      const RecordedLight& from = own(x, y);
       const bool is_usable = from.usable != 0.0f;
       output[0](x, y) = is_usable ? from.r : kNone;
       output[1](x, y) = is_usable ? from.g : kNone;

@@ -9,7 +9,7 @@
 
 #include "frame/bad_file.h"
 #include "sequences/denoise/file_headers.h"
-#include "sequences/denoise/layer_list.h"
+#include "sequences/layers/layer_list.h"
 #include "tests/fuzz/target.h"
 
 namespace eigenlight {

@@ -59,7 +59,7 @@ struct Found {
   void count(const fs::path& out, std::size_t frames) {
     ++kills;
     ++by_frames[frames];
-    with_checkpoint += fs::exists(out / ".eigenlight-state") ? 1 : 0;
+    with_checkpoint += fs::exists(out / ".s.0001.exr.eigenlight-state") ? 1 : 0;
     std::error_code error;
     for (const auto& entry : fs::recursive_directory_iterator(out, error)) {
       if (entry.path().extension() != ".tmp") continue;

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "frame/bad_file.h"
-#include "sequences/denoise/layer_list.h"
+#include "sequences/layers/layer_list.h"
 
 namespace eigenlight {
 namespace {

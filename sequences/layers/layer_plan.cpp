@@ -1,4 +1,4 @@
-#include "sequences/denoise/layer_plan.h"
+#include "sequences/layers/layer_plan.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 
 #include "frame/bad_file.h"
 #include "frame/frame.h"
-#include "sequences/denoise/layer_planner.h"
+#include "sequences/layers/layer_planner.h"
 
 namespace eigenlight {
 

@@ -1,4 +1,4 @@
-#include "sequences/denoise/layer_list.h"
+#include "sequences/layers/layer_list.h"
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfStandardAttributes.h>

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "sequences/denoise/layer_map.h"
-#include "sequences/denoise/layer_plan.h"
+#include "sequences/layers/layer_map.h"
+#include "sequences/layers/layer_plan.h"
 
 namespace eigenlight {
 

@@ -1,4 +1,4 @@
-#include "sequences/denoise/layer_names.h"
+#include "sequences/layers/layer_names.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "sequences/denoise/layer_plan.h"
+#include "sequences/layers/layer_plan.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

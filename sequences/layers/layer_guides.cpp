@@ -7,7 +7,7 @@
 
 #include "frame/frame.h"
 #include "frame/named.h"
-#include "sequences/denoise/layer_planner.h"
+#include "sequences/layers/layer_planner.h"
 
 namespace eigenlight {
 namespace {

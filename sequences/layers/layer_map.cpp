@@ -1,4 +1,4 @@
-#include "sequences/denoise/layer_map.h"
+#include "sequences/layers/layer_map.h"
 
 #include <fmt/format.h>
 

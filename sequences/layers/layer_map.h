@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "sequences/denoise/layer_list.h"
-#include "sequences/denoise/layer_names.h"
+#include "sequences/layers/layer_list.h"
+#include "sequences/layers/layer_names.h"
 
 namespace eigenlight {
 

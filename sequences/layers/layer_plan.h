@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "sequences/denoise/layer_list.h"
-#include "sequences/denoise/layer_names.h"
+#include "sequences/layers/layer_list.h"
+#include "sequences/layers/layer_names.h"
 
 namespace eigenlight {
 
