@@ -10,12 +10,14 @@ namespace eigenlight {
 namespace {
 
 // Frames that are read, computed, composed and written at one time.
-constexpr double kInFlight = 6.0;
+constexpr double kInFlight = 7.0;
 // Of the loop, the filters and checkpoints, for a layer of light; and of the guides of a frame and
 // its links to others.
-constexpr double kDenoiserBytes = 500.0, kGuideBytes = 48.0;
+constexpr double kDenoiserBytes = 600.0, kGuideBytes = 48.0;
 // Bytes that a layer of light leaves for other frames, and those of an estimate.
 constexpr double kRecordBytes = 32.0, kEstimateBytes = 20.0;
+// Memory that was measured for a later frame, over what was counted.
+constexpr double kOver = 1.15;
 // Earlier frames that direct light is gathered from.
 constexpr double kPastFrames = 4.0;
 
@@ -25,8 +27,11 @@ MemoryPlan plan_memory(const LayerPlan& layers) {
   MemoryPlan plan;
   for (const ViewPlan& view : layers.views) {
     double channels = 0.0, lights = 0.0, direct = 0.0;
+    std::set<std::string> counted;
     for (const FileLayer* layer : layers_read(view)) {
-      channels += static_cast<double>(layer->channels.size());
+      if (counted.insert(key_of(*layer)).second) {
+        channels += static_cast<double>(layer->channels.size());
+      }
     }
     for (const PlannedLight& light : view.lights) {
       lights += 1.0;
@@ -36,7 +41,7 @@ MemoryPlan plan_memory(const LayerPlan& layers) {
     const double record = kGuideBytes + kRecordBytes * lights;
     plan.fixed += kInFlight * raw + 0.5 * kInFlight * frame + record + kDenoiserBytes * lights +
                   kPastFrames * (kGuideBytes + kRecordBytes * direct);
-    plan.per_frame += raw + record + kEstimateBytes * (lights - direct);
+    plan.per_frame += kOver * (raw + record + kEstimateBytes * (lights - direct));
   }
   return plan;
 }
