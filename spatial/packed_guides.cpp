@@ -13,10 +13,14 @@ constexpr float kNoSurface = 8.0f;
 // Differences of two such values fit 16 bits and a sign: depths from 1e-9 to 1e9 at half a width.
 constexpr float kMostWidths = 45.0f;
 
-std::int16_t packed(float value) {
-  if (!std::isfinite(value)) return 0;
+std::int16_t in_steps(float widths) {
   return static_cast<std::int16_t>(
-      std::lround(std::clamp(value, -kMostWidths, kMostWidths) * kGuideSteps));
+      std::lround(std::clamp(widths, -kMostWidths, kMostWidths) * kGuideSteps));
+}
+
+// A value of [low, high].
+std::int16_t packed(float value, float low, float high, float width) {
+  return std::isfinite(value) ? in_steps(std::clamp(value, low, high) / width) : std::int16_t{0};
 }
 
 }  // namespace
@@ -37,13 +41,12 @@ void pack_guides(const FrameInput& frame, const GuideWidths& widths, Plane<Packe
       const float depth = frame.surface.depth(x, y);
       const bool is_surface = frame.surface.id(x, y) != 0 && std::isfinite(depth) && depth > 0.0f;
       for (std::size_t c = 0; c < 3; ++c) {
-        to.normal_color[c] = packed(std::clamp(normal[c](x, y), -2.0f, 2.0f) / widths.normal);
+        to.normal_color[c] = packed(normal[c](x, y), -2.0f, 2.0f, widths.normal);
         // Colors above 1 are those of lamps; they differ enough.
-        to.normal_color[3 + c] =
-            packed(std::clamp(frame.surface.albedo[c](x, y), 0.0f, 2.0f) / widths.color);
+        to.normal_color[3 + c] = packed(frame.surface.albedo[c](x, y), 0.0f, 2.0f, widths.color);
       }
-      to.depth = is_surface ? packed(std::log(depth) / widths.depth) : std::int16_t{0};
-      to.other = is_surface ? std::int16_t{0} : packed(kNoSurface);
+      to.depth = is_surface ? in_steps(std::log(depth) / widths.depth) : std::int16_t{0};
+      to.other = is_surface ? std::int16_t{0} : in_steps(kNoSurface);
     }
   });
 }
