@@ -27,23 +27,17 @@ struct SoftPicture {
 
 class SoftFilter {
  public:
-  SoftFilter(const FrameInput& frame, const SoftAtrousOptions& options)
-      : frame_(frame), options_(options) {}
+  SoftFilter(const Plane<PackedGuide>& guides, const SoftAtrousOptions& options)
+      : guides_(guides), options_(options) {}
 
   [[nodiscard]] double geometry(int px, int py, int qx, int qy) const {
-    const auto& [depth, normal, albedo, id] = frame_.surface;
-    if (id(qx, qy) == 0) return 0.0;
-    double square = 0.0;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const auto difference = [&](const Plane<float>& plane) {
-        return static_cast<double>(plane(px, py)) - static_cast<double>(plane(qx, qy));
-      };
-      square += std::pow(difference(normal[c]) / static_cast<double>(options_.normal), 2.0);
-      square += std::pow(difference(albedo[c]) / static_cast<double>(options_.color), 2.0);
+    const PackedGuide &p = guides_(px, py), &q = guides_(qx, qy);
+    if (!shows_surface(q)) return 0.0;
+    double square = std::pow(p.depth - q.depth, 2.0);
+    for (std::size_t i = 0; i < 6; ++i) {
+      square += std::pow(p.normal_color[i] - q.normal_color[i], 2.0);
     }
-    const double z =
-        std::log(static_cast<double>(depth(px, py)) / static_cast<double>(depth(qx, qy)));
-    return falloff(square + std::pow(z / static_cast<double>(options_.depth), 2.0));
+    return falloff(square / std::pow(static_cast<double>(kGuideSteps), 2.0));
   }
 
   /// Mean of luminance over 3 x 3 pixels, and the variance of that mean.
@@ -66,7 +60,7 @@ class SoftFilter {
     SoftPicture out = in;
     for (int y = 0; y < in.extent.height; ++y) {
       for (int x = 0; x < in.extent.width; ++x) {
-        if (frame_.surface.id(x, y) == 0) {
+        if (!shows_surface(guides_(x, y))) {
           out.at(x, y) = {};
           continue;
         }
@@ -109,7 +103,7 @@ class SoftFilter {
     return result;
   }
 
-  const FrameInput& frame_;
+  const Plane<PackedGuide>& guides_;
   SoftAtrousOptions options_;
 };
 

@@ -57,13 +57,19 @@ Picture noisy_light(const FrameInput& frame, float noise) {
   return made;
 }
 
-void filter(const FrameInput& frame, const SoftAtrousOptions& options, Picture& picture) {
-  SoftAtrous filter(frame.extent(), options);
-  const SoftLayer layers[] = {{&picture.light, &picture.variance, 5.0f}};
-  filter.process(frame, {}, layers);
+Plane<PackedGuide> packed(const FrameInput& frame, const GuideWidths& widths = {}) {
+  Plane<PackedGuide> guides;
+  pack_guides(frame, widths, guides);
+  return guides;
 }
 
-void expect_twin(const SoftAtrousOptions& options) {
+void filter(const Plane<PackedGuide>& guides, const SoftAtrousOptions& options, Picture& picture) {
+  SoftAtrous filter(guides.extent(), options);
+  const SoftLayer layers[] = {{&picture.light, &picture.variance, 5.0f}};
+  filter.process(guides, layers);
+}
+
+void expect_twin(const SoftAtrousOptions& options, const GuideWidths& widths) {
   const FrameInput frame = noisy_frame({41, 23});
   Picture picture = noisy_light(frame, 0.4f);
   reference::SoftPicture twin{frame.extent(), {}};
@@ -78,8 +84,9 @@ void expect_twin(const SoftAtrousOptions& options) {
           {at(picture.light[0]), at(picture.light[1]), at(picture.light[2]), at(picture.variance)});
     }
   }
-  filter(frame, options, picture);
-  const reference::SoftFilter slow(frame, options);
+  const Plane<PackedGuide> guides = packed(frame, widths);
+  filter(guides, options, picture);
+  const reference::SoftFilter slow(guides, options);
   for (int i = 0; i < options.passes; ++i) twin = slow.pass(twin, 5.0, i);
   for (int y = 0; y < 23; ++y) {
     for (int x = 0; x < 41; ++x) {
@@ -93,8 +100,8 @@ void expect_twin(const SoftAtrousOptions& options) {
 }
 
 TEST(SoftAtrous, EqualsItsTwin) {
-  expect_twin({.passes = 3, .radius = 2});
-  expect_twin({.passes = 2, .radius = 1, .normal = 0.5f, .color = 0.3f, .depth = 0.2f});
+  expect_twin({.passes = 3, .radius = 2}, {});
+  expect_twin({.passes = 2, .radius = 1}, {.normal = 0.5f, .color = 0.3f, .depth = 0.2f});
 }
 
 // Light over both walls is the same before and after, and most noise is gone.
@@ -110,7 +117,7 @@ TEST(SoftAtrous, RemovesNoiseAndKeepsLightAndEdges) {
     }
   };
   sum(before);
-  filter(frame, {}, picture);
+  filter(packed(frame), {}, picture);
   sum(after);
   for (int y = 0; y < 48; ++y) {
     for (int x = 0; x < 63; ++x) {
@@ -128,7 +135,7 @@ TEST(SoftAtrous, AnOutlierSpreadsItsLight) {
   Picture picture = noisy_light(frame, 0.5f);
   for (int c = 0; c < 3; ++c) picture.light[c](40, 24) = 60.0f;
   variance_of_frame(frame, picture.light, picture.variance);
-  filter(frame, {}, picture);
+  filter(packed(frame), {}, picture);
   EXPECT_LT(picture.light[0](40, 24), 12.0f);
 }
 
@@ -137,8 +144,8 @@ TEST(SoftAtrous, PixelsThatAreNotFiniteAreFilledAndHarmNoOthers) {
   Picture good = noisy_light(frame, 0.1f), bad = noisy_light(frame, 0.1f);
   bad.light[1](10, 10) = std::numeric_limits<float>::quiet_NaN();
   bad.light[0](30, 12) = std::numeric_limits<float>::infinity();
-  filter(frame, {}, good);
-  filter(frame, {}, bad);
+  filter(packed(frame), {}, good);
+  filter(packed(frame), {}, bad);
   for (int y = 0; y < 23; ++y) {
     for (int x = 0; x < 40; ++x) {
       ASSERT_NEAR(bad.light[0](x, y), good.light[0](x, y), 0.1f * good.light[0](x, y));
@@ -150,10 +157,10 @@ TEST(SoftAtrous, LayersDoNotMix) {
   const FrameInput frame = noisy_frame({41, 23});
   Picture alone = noisy_light(frame, 0.4f), one = noisy_light(frame, 0.4f),
           two = noisy_light(frame, 0.1f);
-  filter(frame, {}, alone);
+  filter(packed(frame), {}, alone);
   SoftAtrous both(frame.extent(), {});
   const SoftLayer layers[] = {{&one.light, &one.variance, 5.0f}, {&two.light, &two.variance, 3.0f}};
-  both.process(frame, {}, layers);
+  both.process(packed(frame), layers);
   EXPECT_TRUE(planes_equal(one.light, alone.light));
 }
 
@@ -168,6 +175,15 @@ TEST(SoftAtrous, OptionsAreChecked) {
         SoftAtrous({8, 8}, {.radius = 3});
       },
       ThrowsMessage<std::invalid_argument>(HasSubstr("radius 3")));
+}
+
+TEST(SoftAtrous, GuidesOfAnotherSizeAreRefused) {
+  const FrameInput frame = noisy_frame({41, 23});
+  Picture picture = noisy_light(frame, 0.4f);
+  SoftAtrous filter({40, 23}, {});
+  const SoftLayer layers[] = {{&picture.light, &picture.variance, 5.0f}};
+  EXPECT_THAT([&] { filter.process(packed(frame), layers); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("guides of 41x23 pixels")));
 }
 
 }  // namespace
