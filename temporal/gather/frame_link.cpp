@@ -42,10 +42,11 @@ void link_back(const FrameInput& frame, FrameLink& link) {
   parallel_for(extent.height, [&](int y) {
     for (int x = 0; x < extent.width; ++x) {
       const float dx = frame.motion[0](x, y), dy = frame.motion[1](x, y);
-      const float ratio = frame.previous_depth(x, y) / frame.surface.depth(x, y);
+      const float depth = frame.surface.depth(x, y), before = frame.previous_depth(x, y);
       const bool is_known = frame.previous_index >= 0 && frame.surface.id(x, y) != 0 &&
-                            std::isfinite(dx + dy + ratio) && ratio > 0.0f;
-      link(x, y) = is_known ? Link{dx, dy, std::log(ratio), 1.0f} : Link{};
+                            std::isfinite(dx) && std::isfinite(dy) && std::isfinite(depth) &&
+                            std::isfinite(before) && depth > 0.0f && before > 0.0f;
+      link(x, y) = is_known ? Link{dx, dy, std::log(before / depth), 1.0f} : Link{};
     }
   });
 }

@@ -16,8 +16,8 @@ using FrameLink = Plane<Link>;
 /// low, for means over a few samples at edges differ much from frame to frame.
 inline constexpr float kLeastMatch = 0.05f;
 
-/// From a frame to the one before it, by motion and previous_depth. Where they are not finite, the
-/// place is unknown.
+/// From a frame to the one before it, by motion and previous_depth. The place is unknown where
+/// these are not finite, or a depth is not positive.
 void link_back(const FrameInput& frame, FrameLink& link);
 
 /// From the frame before to a frame that knows only where its own pixels came from: `back` turned
