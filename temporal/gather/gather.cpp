@@ -150,11 +150,11 @@ class Gatherer {
       }
       if (!find_taps(*step.guides, guides_(x, y), place, widths_, taps)) return;
       for (std::size_t i = 0; i < layers_.size(); ++i) {
-        if (!step.lights[i]) continue;
         if (step.changes[i]) {
           gain[i] *= step.changes[i]->at(before.x, before.y);
           change[i] = std::max(change[i], std::abs(std::log(gain[i])) / options_.change);
         }
+        if (!step.lights[i]) continue;
         add_candidate(*step.lights[i], taps, gain[i], 1.0f / (1.0f + change[i] * change[i]),
                       found[i]);
       }

@@ -48,21 +48,24 @@ struct GatherLayer {
 
 /// For each pixel p,
 ///   out = (n e + sum_j w_j g_j u_j) / (n + sum_j w_j),
-/// e the estimate of n frames, u_j the light of frame j at the place of p there, between its four
-/// pixels by bilinear weights times guide_weight(), and g_j the product of changes on the way. A
-/// walk ends where guides match by less than kLeastMatch, or the way is not known.
+/// e the estimate of n frames, at least 1, u_j the light of frame j at the place of p there,
+/// between its four pixels by bilinear weights times guide_weight(), m_j the sum of these over
+/// pixels whose light can be used, and g_j the product of changes on the way. A walk ends where
+/// guides match by less than kLeastMatch in sum, or less than half of the way is known; a frame
+/// counts where at least half of what matches can be used.
 ///
 /// Without `count`, for light whose edges move over surfaces, weights are tests of the pilots s:
-///   w_j = falloff(slope max(0, (s_j - s)^2 / 2v - soft)),
-/// v the mean over all frames of the pilots' variances. What a frame's own noise is must not decide
-/// how much the frame counts: bright outliers have large variances, dark pixels small ones, and
-/// light would get lost.
+///   w_j = m_j falloff(slope max(0, (s_j - s)^2 / 2v - soft)),
+/// v the mean over all frames, weighted by m_j, of the pilots' variances. What a frame's own noise
+/// is must not decide how much the frame counts: bright outliers have large variances, dark pixels
+/// small ones, and light would get lost.
 ///
 /// With `count` there is no such test, for the same reason: weights depend on cells alone,
-///   w_j = 1 / (1 + (max over the way of |log g| / change)^2).
+///   w_j = m_j / (1 + (max over the way of |log g| / change)^2).
 ///
-/// Light that is not finite is left out. Variances: (n^2 var(e) + sum (w_j g_j)^2 noise) / (n +
-/// sum w_j)^2, noise the mean over all frames. A pixel without surface stays as it is.
+/// Light that is not finite is left out: n = 0 where it is that of e. Variances: (n^2 var(e) + sum
+/// (w_j g_j)^2 noise) / (n + sum w_j)^2, noise the mean over all frames, which stands for var(e)
+/// without `count`. A pixel without surface, or for which no light is found, stays as it is.
 void gather(const Plane<PackedGuide>& guides, const GuideWidths& widths,
             std::span<const GatherWalk> walks, std::span<const GatherLayer> layers,
             const GatherOptions& options);
