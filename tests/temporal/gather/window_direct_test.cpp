@@ -86,6 +86,18 @@ TEST(WindowDenoiserDirect, OtherFramesSharpenTheEdge) {
   EXPECT_LT(both.at(-10, -2).square, 0.25 * alone.at(-10, -2).square);
 }
 
+TEST(WindowDenoiserDirect, TakesAsManyPastFramesAsAskedFor) {
+  const std::vector<Frame> frames = frames_of(moving_shadow());
+  std::vector<Frame> mixed = frames_of(moving_shadow());
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (auto& plane : mixed[i].lights[0].radiance) plane.fill(0.4f);
+  }
+  const auto one = run_window(frames, window(0, 2)), two = run_window(mixed, window(0, 2));
+  ASSERT_EQ(one.size(), 14u);
+  EXPECT_FALSE(same_bits(two[4], one[4]));
+  for (std::size_t i = 5; i < 14; ++i) EXPECT_TRUE(same_bits(two[i], one[i])) << i;
+}
+
 TEST(WindowDenoiserDirect, GatheringLowersNoise) {
   // Before the filter: one standard deviation of almost no size mixes nothing.
   const auto unfiltered = [](int ahead, int past) {
