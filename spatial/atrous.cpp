@@ -10,7 +10,7 @@
 namespace eigenlight {
 namespace {
 
-std::uint32_t bit(std::size_t image) { return std::uint32_t{1} << image; }
+std::uint8_t bit(std::size_t image) { return static_cast<std::uint8_t>(1u << image); }
 
 const AtrousOptions& valid(const AtrousOptions& options) {
   options.validate();
@@ -63,7 +63,6 @@ Atrous::Atrous(Extent extent, const AtrousOptions& options, int images)
     : options_(valid(options)),
       grid_(stage_tiles(extent)),
       planar_(extent, options.planar_tolerance()),
-      any_(grid_),
       wanted_(grid_),
       skipped_(grid_) {
   EL_CHECK(images >= 1 && images <= kMostImages, "images {}: expected 1 to {}", images,
@@ -91,8 +90,7 @@ void Atrous::check(const FrameInput& guides, std::span<const AtrousImage> images
 
 void Atrous::find_planes(const FrameInput& guides) {
   if (options_.skip_planar) {
-    for (int i = 0; i < any_.size(); ++i) any_[i] = wanted_[i] != 0 ? 1 : 0;
-    planar_.find(guides, any_);
+    planar_.find(guides, wanted_);
   } else {
     planar_.clear();
   }
@@ -134,7 +132,7 @@ void Atrous::run_pass(const FrameInput& guides, int pass, std::span<const Atrous
     all[i] = {&images[i].color, &images[i].variance, images[i].earlier, &scratch_[i].color,
               &scratch_[i].variance};
   }
-  const auto run = [&](const Tile& area, std::uint32_t wanted) {
+  const auto run = [&](const Tile& area, std::uint8_t wanted) {
     std::array<AtrousWork, kMostImages> chosen;
     std::size_t count = 0;
     for (std::size_t i = 0; i < images.size(); ++i) {

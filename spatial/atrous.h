@@ -60,7 +60,7 @@ struct AtrousImage {
 /// `quiet` times the squared luminance are copied. Throws std::invalid_argument if extents differ.
 class Atrous {
  public:
-  static constexpr int kMostImages = kMaxLights;
+  static constexpr int kMostImages = 8;
 
   /// `images`: [1, kMostImages] that can be filtered at once.
   Atrous(Extent extent, const AtrousOptions& options, int images = 1);
@@ -99,8 +99,7 @@ class Atrous {
   TileGrid grid_;
   PlanarBlocks planar_;
   std::vector<Scratch> scratch_;   // of each image
-  PerTile<std::uint8_t> any_;      // 1: an image is filtered there
-  PerTile<std::uint32_t> wanted_;  // bit i: image i is filtered there
+  PerTile<std::uint8_t> wanted_;   // bit i: image i is filtered there
   PerTile<std::int64_t> skipped_;  // surface pixels
 };
 

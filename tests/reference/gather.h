@@ -37,9 +37,9 @@ class SlowGather {
     const GatherPixel before = out;
     std::vector<Found> found;
     for (const GatherWalk& walk : in_.walks) follow(walk, index, x, y, found);
-    const LightSample& own = (*layer.own)(x, y);
-    const double noise = mean(own, &LightSample::noise, found);
-    const double pilots = mean(own, &LightSample::pilot_variance, found);
+    const RecordedLight& own = (*layer.own)(x, y);
+    const double noise = mean(own, &RecordedLight::noise, found);
+    const double pilots = mean(own, &RecordedLight::pilot_variance, found);
     double n = layer.count ? std::max(value(*layer.count, x, y), 1.0) : 1.0;
     double spread = n * n * (layer.count ? out.variance : noise);
     if (!std::isfinite(out.light[0] + out.light[1] + out.light[2] + spread)) {
@@ -125,7 +125,7 @@ class SlowGather {
                                                      const std::vector<Tap>& taps) {
     Found sum{};
     for (const Tap& tap : taps) {
-      const LightSample& from = record(tap.x, tap.y);
+      const RecordedLight& from = record(tap.x, tap.y);
       if (from.usable == 0.0f) continue;
       const std::array<float, 3> light{from.r, from.g, from.b};
       for (std::size_t c = 0; c < 3; ++c) {
@@ -168,18 +168,18 @@ class SlowGather {
   }
 
   // Over the frame at hand and all that were found, by how well they match.
-  [[nodiscard]] static double mean(const LightSample& own, float LightSample::*member,
+  [[nodiscard]] static double mean(const RecordedLight& own, float RecordedLight::*member,
                                    const std::vector<Found>& found) {
     double sum = static_cast<double>(own.usable * own.*member);
     double weights = static_cast<double>(own.usable);
     for (const Found& frame : found) {
-      sum += frame.match * (member == &LightSample::noise ? frame.noise : frame.pilot_variance);
+      sum += frame.match * (member == &RecordedLight::noise ? frame.noise : frame.pilot_variance);
       weights += frame.match;
     }
     return weights > 0.0 ? sum / weights : 0.0;
   }
 
-  [[nodiscard]] double test(const Found& frame, const LightSample& own, double pilots) const {
+  [[nodiscard]] double test(const Found& frame, const RecordedLight& own, double pilots) const {
     const double square = std::pow(frame.pilot - static_cast<double>(own.pilot), 2.0);
     const double excess = square / (2.0 * pilots) - static_cast<double>(in_.options.soft);
     const double far = static_cast<double>(in_.options.slope) * std::max(excess, 0.0);

@@ -134,7 +134,7 @@ struct Estimates {
   Estimates& operator=(const Estimates&) = delete;
 
   void fill(const Shot& shot, std::size_t i, int x, int y) {
-    const LightSample& own = shot.own[i](x, y);
+    const RecordedLight& own = shot.own[i](x, y);
     const auto key = static_cast<std::uint32_t>(600 + i);
     const bool is_own = i == 1;
     light[i][0](x, y) = is_own ? own.r : 1.0f + draw(key, x, y, 0);
