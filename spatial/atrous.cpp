@@ -10,7 +10,13 @@
 namespace eigenlight {
 namespace {
 
+constexpr std::uint8_t kAll = 0xff;
+
 std::uint8_t bit(std::size_t image) { return static_cast<std::uint8_t>(1u << image); }
+
+AtrousWork work_of(const AtrousImage& image, Planes<3>& out_color, Plane<float>& out_variance) {
+  return {&image.color, &image.variance, image.earlier, &out_color, &out_variance};
+}
 
 const AtrousOptions& valid(const AtrousOptions& options) {
   options.validate();
@@ -62,13 +68,15 @@ void AtrousOptions::validate() const {
 Atrous::Atrous(Extent extent, const AtrousOptions& options, int images)
     : options_(valid(options)),
       grid_(stage_tiles(extent)),
-      planar_(extent, options.planar_tolerance()),
       wanted_(grid_),
+      same_(grid_),
+      joined_(grid_),
       skipped_(grid_) {
   EL_CHECK(images >= 1 && images <= kMostImages, "images {}: expected 1 to {}", images,
            kMostImages);
   for (int i = 0; i < images; ++i) {
     scratch_.push_back({make_planes<3>(extent), Plane<float>(extent)});
+    planar_.emplace_back(extent, options.planar_tolerance());
   }
 }
 
@@ -88,11 +96,12 @@ void Atrous::check(const FrameInput& guides, std::span<const AtrousImage> images
   }
 }
 
-void Atrous::find_planes(const FrameInput& guides) {
+void Atrous::find_planes(const FrameInput& guides, const PerTile<std::uint8_t>& wanted,
+                         std::size_t image) {
   if (options_.skip_planar) {
-    planar_.find(guides, wanted_);
+    planar_[image].find(guides, wanted);
   } else {
-    planar_.clear();
+    planar_[image].clear();
   }
 }
 
@@ -126,37 +135,52 @@ void Atrous::forget_quiet(float quiet, std::span<const AtrousImage> images) {
   });
 }
 
-void Atrous::run_pass(const FrameInput& guides, int pass, std::span<const AtrousImage> images) {
-  std::array<AtrousWork, kMostImages> all;
-  for (std::size_t i = 0; i < images.size(); ++i) {
-    all[i] = {&images[i].color, &images[i].variance, images[i].earlier, &scratch_[i].color,
-              &scratch_[i].variance};
+// Filters some images of an area together.
+void Atrous::run_images(int pass, std::span<const Job> jobs, const Tile& area,
+                        std::uint8_t images) {
+  std::array<AtrousWork, kMostImages> chosen;
+  std::size_t count = 0;
+  const Job* first = nullptr;
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    if ((images & bit(i)) == 0) continue;
+    if (first == nullptr) first = &jobs[i];
+    chosen[count++] = work_of(jobs[i].image, scratch_[i].color, scratch_[i].variance);
   }
-  const auto run = [&](const Tile& area, std::uint8_t wanted) {
-    std::array<AtrousWork, kMostImages> chosen;
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < images.size(); ++i) {
-      (wanted & bit(i)) != 0 ? (void)(chosen[count++] = all[i]) : copy_tile(all[i], area);
+  if (count == 0) return;
+  atrous_tile({first->guides, options_, first->planar, 1 << pass, std::span(chosen).first(count)},
+              area);
+}
+
+// Those that share their weights of geometry come together, others one by one.
+void Atrous::run_area(int pass, std::span<const Job> jobs, const Tile& area) {
+  const std::uint8_t wanted = wanted_[area], joined = joined_[area];
+  run_images(pass, jobs, area, wanted & joined);
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    if ((wanted & bit(i)) == 0) {
+      copy_tile(work_of(jobs[i].image, scratch_[i].color, scratch_[i].variance), area);
+    } else if ((joined & bit(i)) == 0) {
+      run_images(pass, jobs, area, bit(i));
     }
-    if (count == 0) return;
-    atrous_tile({guides, options_, planar_, 1 << pass, std::span(chosen).first(count)}, area);
-  };
+  }
+}
+
+void Atrous::run_pass(int pass, std::span<const Job> jobs) {
   for_each_strip(grid_, [&](const Strip& strip) {
-    // Neighboring tiles in which the same images are wanted are processed as one.
+    // Neighboring tiles in which the same images are wanted and joined are processed as one.
     Tile area = grid_.tile(strip.area.index);
     for (int i = 1; i < strip.tiles; ++i) {
       const Tile tile = grid_.tile(strip.area.index + i);
-      if (wanted_[tile] != wanted_[area]) {
-        run(area, wanted_[area]);
+      if (wanted_[tile] != wanted_[area] || joined_[tile] != joined_[area]) {
+        run_area(pass, jobs, area);
         area = tile;
       }
       area.x1 = tile.x1;
     }
-    run(area, wanted_[area]);
+    run_area(pass, jobs, area);
   });
-  for (std::size_t i = 0; i < images.size(); ++i) {
-    std::swap(images[i].color, scratch_[i].color);
-    std::swap(images[i].variance, scratch_[i].variance);
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    std::swap(jobs[i].image.color, scratch_[i].color);
+    std::swap(jobs[i].image.variance, scratch_[i].variance);
   }
 }
 
@@ -164,10 +188,13 @@ std::int64_t Atrous::process(const FrameInput& guides, float quiet,
                              std::span<const AtrousImage> images) {
   check(guides, images);
   const std::int64_t skipped = find_noisy(guides, quiet, images);
-  find_planes(guides);
+  find_planes(guides, wanted_, 0);
+  joined_.fill(kAll);
+  std::vector<Job> jobs;
+  for (const AtrousImage& image : images) jobs.push_back({guides, planar_.front(), image});
   for (int pass = 0; pass < options_.passes; ++pass) {
     if (pass > 0) forget_quiet(quiet, images);
-    run_pass(guides, pass, images);
+    run_pass(pass, jobs);
   }
   return skipped;
 }
@@ -175,17 +202,6 @@ std::int64_t Atrous::process(const FrameInput& guides, float quiet,
 std::int64_t Atrous::process(const FrameInput& guides, float quiet, Planes<3>& color,
                              Plane<float>& variance, const Plane<float>* earlier) {
   return process(guides, quiet, std::array{AtrousImage{color, variance, earlier}});
-}
-
-void Atrous::process(const FrameInput& guides, const PerTile<std::uint8_t>& wanted,
-                     Planes<3>& color, Plane<float>& variance) {
-  const std::array image{AtrousImage{color, variance}};
-  check(guides, image);
-  EL_CHECK(wanted.size() == grid_.count(), "{} wanted flags for {} tiles", wanted.size(),
-           grid_.count());
-  for_each_tile(grid_, [&](const Tile& tile) { wanted_[tile] = wanted[tile] != 0 ? 1 : 0; });
-  find_planes(guides);
-  for (int pass = 0; pass < options_.passes; ++pass) run_pass(guides, pass, image);
 }
 
 }  // namespace eigenlight

@@ -38,6 +38,15 @@ struct AtrousImage {
   const Plane<float>* earlier = nullptr;  ///< g below, or null
 };
 
+/// An image, and what is known of its pixels. `wanted`: not 0 in the tiles of stage_tiles() that
+/// are filtered.
+struct AtrousPart {
+  const FrameInput& guides;
+  const PerTile<std::uint8_t>& wanted;
+  Planes<3>& color;
+  Plane<float>& variance;
+};
+
 /// Dammertz et al. 2010 with the variance steering of Schied et al. 2017 (SVGF, section 4.4):
 ///   out(p) = sum_q h(q) w(p, q) c(q) / sum_q h(q) w(p, q),  q = p + 2^pass (-1 .. 1, -1 .. 1),
 ///   h 3 x 3 binomial weights instead of their 5 x 5 spline: a third of the cost,
@@ -73,13 +82,17 @@ class Atrous {
   std::int64_t process(const FrameInput& guides, float quiet, Planes<3>& color,
                        Plane<float>& variance, const Plane<float>* earlier = nullptr);
 
-  /// One image without an earlier picture, in the tiles of stage_tiles() with wanted[tile] != 0;
-  /// the others are copied.
-  void process(const FrameInput& guides, const PerTile<std::uint8_t>& wanted, Planes<3>& color,
-               Plane<float>& variance);
+  /// Filters 1 to `images` images without earlier pictures in the tiles wanted of each; the others
+  /// are copied. Their guides are those of one frame, but each may lack other pixels (depth +inf,
+  /// id 0). Weights of geometry are calculated once for all images whose guides are the same around
+  /// a tile; each image gets the same bits as alone.
+  void process(std::span<const AtrousPart> parts);
 
-  /// Pixels whose first pass calculated no weights of geometry.
-  [[nodiscard]] std::int64_t planar_pixels() const { return planar_.pixels(); }
+  /// Bit i: the last process() of parts found the guides of image i around a tile to be those of
+  /// image 0, and so took the same weights.
+  [[nodiscard]] std::uint8_t joined(int tile) const { return joined_[tile]; }
+  /// Pixels whose first pass calculated no weights of geometry, for the first image.
+  [[nodiscard]] std::int64_t planar_pixels() const { return planar_.front().pixels(); }
 
  private:
   // Room for the outcome of a pass.
@@ -88,18 +101,35 @@ class Atrous {
     Plane<float> variance;
   };
 
+  struct Job {
+    const FrameInput& guides;
+    const PlanarBlocks& planar;
+    AtrousImage image;
+  };
+
   void check(const FrameInput& guides, std::span<const AtrousImage> images) const;
+  void check(std::span<const AtrousPart> parts) const;
   std::int64_t find_noisy(const FrameInput& guides, float quiet,
                           std::span<const AtrousImage> images);
   void forget_quiet(float quiet, std::span<const AtrousImage> images);
-  void find_planes(const FrameInput& guides);
-  void run_pass(const FrameInput& guides, int pass, std::span<const AtrousImage> images);
+  void find_same(std::span<const AtrousPart> parts);
+  [[nodiscard]] std::uint8_t same_around(int tile) const;
+  void join(std::span<const AtrousPart> parts);
+  void find_planes(const FrameInput& guides, const PerTile<std::uint8_t>& wanted,
+                   std::size_t image);
+  void run_images(int pass, std::span<const Job> jobs, const Tile& area, std::uint8_t images);
+  void run_area(int pass, std::span<const Job> jobs, const Tile& area);
+  void run_pass(int pass, std::span<const Job> jobs);
 
   AtrousOptions options_;
   TileGrid grid_;
-  PlanarBlocks planar_;
-  std::vector<Scratch> scratch_;   // of each image
-  PerTile<std::uint8_t> wanted_;   // bit i: image i is filtered there
+  // Of each image; the first one's is that of all whose guides are the same everywhere.
+  std::vector<PlanarBlocks> planar_;
+  std::vector<Scratch> scratch_;  // of each image
+  // Bit i stands for image i: it is filtered there; its guides are those of image 0 in the tile; so
+  // are its weights of geometry.
+  PerTile<std::uint8_t> wanted_, same_, joined_;
+  std::uint8_t all_same_ = 0;      // bit i: the planes of image 0 are those of image i
   PerTile<std::int64_t> skipped_;  // surface pixels
 };
 

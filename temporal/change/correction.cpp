@@ -23,15 +23,11 @@ void CorrectionOptions::validate() const {
   EL_CHECK(passes >= 1 && passes <= 6, "correction passes {}: expected 1 to 6", passes);
 }
 
-// The filter looks at geometry alone.
 Correction::Correction(Extent extent, const CorrectionOptions& options, const TapOptions& taps)
     : options_(options),
       gate_(extent, 1),
       cells_(extent, taps),
       grid_(stage_tiles(cells_.extent())),
-      filter_(cells_.extent(), {.passes = options.passes,
-                                .luminance_sigmas = std::numeric_limits<float>::infinity(),
-                                .skip_planar = options.skip_planar}),
       correction_(make_planes<3>(extent)),
       factor_(cells_.extent()),
       block_grid_(extent, kResidualBlock, kResidualBlock),
@@ -76,40 +72,40 @@ void Correction::for_needed_cells(const Rect& area, const Body& body) const {
   }
 }
 
-double Correction::smooth(const CorrectionInputs& in, Plane<float>& innovation) {
+void Correction::prepare(const CorrectionInputs& in) {
   std::swap(open_, was_open_);
   std::swap(loaded_, was_loaded_);
   loaded_.fill(0);
   count_tiles();
-  const bool any = open_gates();
+  share_ = 0.0;
+  is_any_open_ = open_gates();
   for_each_tile(gate_.grid(), [&](const Tile& tile) { close_tile(tile); });
-  if (!any) return 0.0;
+  if (!is_any_open_) return;
 
   choose_cells();
   cells_.set_camera(in.guides.camera);
-  const auto on = [&](const PerTile<std::uint8_t>& chosen, auto body) {
-    for_each_tile(grid_, [&](const Tile& cells) {
-      if (chosen[cells] != 0) body(cells);
-    });
-  };
-  // This loop and the spreading read many planes and no neighboring rows, so they go line by line.
+  // Like the spreading, this reads many planes and no neighboring rows, so it goes line by line.
   for_each_segment(grid_, [&](const Tile& row) {
     if (loaded_[row] == 0 || was_loaded_[row] != 0) return;
     place_cells(in.guides.surface, row, cells_);
     load_cells(in, row, cells_);
   });
-  filter_.process(cells_.guides, wanted_, cells_.mean, cells_.noise);
+}
+
+// Between the filter and the spreading.
+void Correction::weigh() {
+  const auto on = [&](const PerTile<std::uint8_t>& chosen, auto body) {
+    for_each_tile(grid_, [&](const Tile& cells) {
+      if (chosen[cells] != 0) body(cells);
+    });
+  };
   on(loaded_, [&](const Tile& cells) { find_factor(cells); });
   corrected_.fill(0);
   on(wanted_, [&](const Tile& cells) { weigh_cells(cells); });
-  for_each_segment(gate_.grid(), [&](const Tile& row) {
-    if (is_open(row.index)) spread_cells(cells_, in.guides, row, {correction_, innovation});
-  });
-
   std::int64_t confirmed = 0;
   for (const ResidualBlock& block : blocks_) confirmed += block.confirmed;
   const auto corrected = std::accumulate(corrected_.begin(), corrected_.end(), std::int64_t{0});
-  return confirmed > 0 ? static_cast<double>(corrected) / static_cast<double>(confirmed) : 0.0;
+  share_ = confirmed > 0 ? static_cast<double>(corrected) / static_cast<double>(confirmed) : 0.0;
 }
 
 void Correction::count_tiles() {

@@ -41,12 +41,13 @@ class Correction {
   /// calls must not share a group.
   void read_geometry(const GBuffer& surface, const Rect& area);
   /// Tests the blocks of `area`, one or more blocks of 8 x 8 side by side, and fills the cells that
-  /// the last frame needed. Call it for the whole image before smooth(), in any order, and again
+  /// the last frame needed. Call it for the whole image before prepare(), in any order, and again
   /// for blocks that change.
   void count_blocks(const CorrectionInputs& in, const Rect& area);
-  /// Computes correction(), and subtracts its luminance from `innovation`, which may be that of the
-  /// inputs. Returns the share of confirmed pixels that are corrected by more than half.
-  double smooth(const CorrectionInputs& in, Plane<float>& innovation);
+  /// Opens the gates, and fills the other cells that they need. CellFilter does the rest.
+  void prepare(const CorrectionInputs& in);
+  /// Share of the last frame's confirmed pixels that are corrected by more than half.
+  [[nodiscard]] double share() const { return share_; }
   /// Zero where nothing is added.
   [[nodiscard]] const Planes<3>& correction() const { return correction_; }
   /// Whether the last frame may have corrected anything in a tile of the coefficients' grid.
@@ -58,6 +59,8 @@ class Correction {
   [[nodiscard]] std::int64_t skipped() const { return skipped_; }
 
  private:
+  friend class CellFilter;
+
   struct TileBlocks {
     int all = 0, significant = 0;
   };
@@ -74,12 +77,12 @@ class Correction {
   void find_factor(const Tile& cells);
   void sum_windows(int x0, int y, int count, WindowRow& sums) const;
   void weigh_cells(const Tile& cells);
+  void weigh();
 
   CorrectionOptions options_;
   CoefficientField gate_;  // g - 1 per tile
   ResidualCells cells_;
   TileGrid grid_;  // of cells
-  Atrous filter_;
   Planes<3> correction_;
   Plane<float> factor_;  // f of each cell
   TileGrid block_grid_;
@@ -92,6 +95,38 @@ class Correction {
   PerTile<std::uint8_t> wanted_, loaded_, was_loaded_;
   PerTile<std::int64_t> corrected_;  // confirmed pixels
   std::int64_t skipped_ = 0;
+  bool is_any_open_ = false;
+  double share_ = 0.0;
+};
+
+/// A layer of light to be corrected.
+struct CorrectionLayer {
+  Correction& correction;
+  const FrameInput& guides;
+  Plane<float>& innovation;  ///< may be that of the inputs
+};
+
+/// The steps of Correction that all layers of light take together. They share what depends on the
+/// geometry of cells, wherever they know the same cells; each gets the same bits as alone.
+class CellFilter {
+ public:
+  /// `layers`: at least 1. Throws std::invalid_argument on a bad size or option.
+  CellFilter(Extent pixels, const CorrectionOptions& options, int layers = 1);
+
+  /// Once a frame, after prepare() of `layers`, 1 to the number given: computes their correction()
+  /// and share(), and subtracts the luminance of correction() from the innovation.
+  void correct(std::span<const CorrectionLayer> layers);
+
+ private:
+  using Layers = std::span<const CorrectionLayer>;
+
+  void correct_some(Layers open);
+  void spread(Layers open) const;
+  void spread_row(Layers open, const Tile& area, std::uint8_t which) const;
+  [[nodiscard]] std::uint8_t joined(const Tile& pixels) const;
+
+  TileGrid cell_grid_;
+  Atrous atrous_;
 };
 
 }  // namespace eigenlight

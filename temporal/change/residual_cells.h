@@ -66,10 +66,15 @@ struct SpreadOutputs {
   Plane<float>& innovation;  ///< minus its luminance
 };
 
+struct SpreadLayer {
+  const ResidualCells& cells;
+  SpreadOutputs out;
+};
+
 /// Brings cells.mean back to the confirmed pixels of `tile`: the mean of the four cells around,
 /// bilinear, of those that show the pixel's surface (object, normal and plane, as for taps);
-/// where none does, of those that show its object; else 0.
-void spread_cells(const ResidualCells& cells, const FrameInput& guides, const Rect& tile,
-                  const SpreadOutputs& out);
+/// where none does, of those that show its object; else 0. Several layers share the weights: their
+/// cells have the same geometry around the tile.
+void spread_cells(std::span<const SpreadLayer> layers, const FrameInput& guides, const Rect& tile);
 
 }  // namespace eigenlight

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "frame/strips.h"
 #include "reproject/taps.h"
 #include "temporal/change/residual_cells.h"
 
@@ -13,17 +14,21 @@ HWY_BEFORE_NAMESPACE();
 namespace eigenlight::HWY_NAMESPACE {
 namespace {
 
-// A vector of pixels, and what the cells around give them.
+// A vector of pixels that asks the cells around.
 struct Taker {
   VF3 normal, view_normal;
   VF plane, tolerance;  // N . X, and the distance off the plane that is still the same surface
   VU id;
+};
+
+// What four cells around give.
+struct Given {
   VF3 sum;
   VF weight;
 };
 
 struct View {
-  const ResidualCells& cells;
+  const ResidualCells& cells;  // for their geometry
   Rays rays;
 };
 
@@ -42,8 +47,6 @@ Taker LoadTaker(const View& view, const FrameInput& frame, int x, int y) {
   taker.tolerance = Mul(depth, Set(view.cells.taps.plane_distance));
   prefetch_below(frame.surface.id, x, y);
   taker.id = Load(frame.surface.id, x, y, U());
-  taker.sum = {{Zero(), Zero(), Zero()}};
-  taker.weight = Zero();
   return taker;
 }
 
@@ -104,7 +107,8 @@ struct InnerCells {
 };
 
 template <Column kColumn, typename Cells>
-HWY_INLINE void TakeCells(const View& view, const Cells& at, int y, float kernel, Taker& taker) {
+HWY_INLINE VF WeighCells(const View& view, const Cells& at, int y, float kernel,
+                         const Taker& taker) {
   const GBuffer& surface = view.cells.guides.surface;
   const auto fetch = [&](const Plane<float>& plane) {
     return at.template Fetch<kColumn>(F(), plane.row(y));
@@ -119,49 +123,127 @@ HWY_INLINE void TakeCells(const View& view, const Cells& at, int y, float kernel
                  {{fetch(surface.normal[0]), fetch(surface.normal[1]), fetch(surface.normal[2])}});
   const MF same =
       And(Le(distance, taker.tolerance), Ge(cosine, Set(view.cells.taps.normal_cosine)));
-  const VF weight = IfThenElseZero(RebindMask(F(), Eq(id, taker.id)),
-                                   IfThenElse(same, Set(kernel), Set(kOtherSurface * kernel)));
-  for (int c = 0; c < 3; ++c) {
-    taker.sum[c] = MulAdd(weight, fetch(view.cells.mean[c]), taker.sum[c]);
-  }
-  taker.weight = Add(taker.weight, weight);
+  return IfThenElseZero(RebindMask(F(), Eq(id, taker.id)),
+                        IfThenElse(same, Set(kernel), Set(kOtherSurface * kernel)));
 }
+
+template <Column kColumn, typename Cells>
+HWY_INLINE void TakeCells(const ResidualCells& cells, const Cells& at, int y, VF weight,
+                          Given& given) {
+  for (int c = 0; c < 3; ++c) {
+    const VF mean = at.template Fetch<kColumn>(F(), cells.mean[c].row(y));
+    given.sum[c] = MulAdd(weight, mean, given.sum[c]);
+  }
+  given.weight = Add(given.weight, weight);
+}
+
+// Rows of cells around a row of pixels: its own, and the one beyond its nearer edge.
+struct CellRows {
+  int own, other;
+
+  CellRows(int y, int height)
+      : own(y / 2), other(std::clamp(own + 2 * (y & 1) - 1, 0, height - 1)) {}
+};
+
+// Weights of the four cells around each pixel of a vector.
+struct Weights {
+  VF of[4];
+};
 
 // A pixel's own cell weighs 3/4 along each axis, the one beyond its nearer edge 1/4.
 template <typename Cells>
-HWY_INLINE void TakeAround(const View& view, const Cells& at, int own, int other, Taker& taker) {
-  TakeCells<Column::kOwn>(view, at, own, 9.0f / 16, taker);
-  TakeCells<Column::kOther>(view, at, own, 3.0f / 16, taker);
-  TakeCells<Column::kOwn>(view, at, other, 3.0f / 16, taker);
-  TakeCells<Column::kOther>(view, at, other, 1.0f / 16, taker);
+HWY_INLINE Weights WeighAround(const View& view, const Cells& at, const CellRows& rows,
+                               const Taker& taker) {
+  return {{WeighCells<Column::kOwn>(view, at, rows.own, 9.0f / 16, taker),
+           WeighCells<Column::kOther>(view, at, rows.own, 3.0f / 16, taker),
+           WeighCells<Column::kOwn>(view, at, rows.other, 3.0f / 16, taker),
+           WeighCells<Column::kOther>(view, at, rows.other, 1.0f / 16, taker)}};
 }
 
-void GiveTaker(const Taker& taker, int x, int y, const SpreadOutputs& out) {
+template <typename Cells>
+HWY_INLINE Given TakeAround(const ResidualCells& cells, const Cells& at, const CellRows& rows,
+                            const Weights& weights) {
+  Given given{{{Zero(), Zero(), Zero()}}, Zero()};
+  TakeCells<Column::kOwn>(cells, at, rows.own, weights.of[0], given);
+  TakeCells<Column::kOther>(cells, at, rows.own, weights.of[1], given);
+  TakeCells<Column::kOwn>(cells, at, rows.other, weights.of[2], given);
+  TakeCells<Column::kOther>(cells, at, rows.other, weights.of[3], given);
+  return given;
+}
+
+HWY_INLINE void Give(const Given& given, int x, int y, const SpreadOutputs& out) {
   const VF before = LoadAndPrefetch(out.innovation, x, y), one = Set(1);
-  const MF takes = AndNot(IsNaN(before), Gt(taker.weight, Zero()));
-  const VF scale = IfThenElseZero(takes, Div(one, IfThenElse(takes, taker.weight, one)));
-  VF3 given;
+  const MF takes = AndNot(IsNaN(before), Gt(given.weight, Zero()));
+  const VF scale = IfThenElseZero(takes, Div(one, IfThenElse(takes, given.weight, one)));
+  VF3 mean;
   for (int c = 0; c < 3; ++c) {
-    given[c] = Mul(taker.sum[c], scale);
-    StoreAndPrefetch(given[c], out.correction[c], x, y);
+    mean[c] = Mul(given.sum[c], scale);
+    StoreAndPrefetch(mean[c], out.correction[c], x, y);
   }
-  Store(Sub(before, Luminance(given)), out.innovation, x, y);
+  Store(Sub(before, Luminance(mean)), out.innovation, x, y);
 }
 
-void SpreadCells(const ResidualCells& cells, const FrameInput& guides, const Rect& tile,
-                 const SpreadOutputs& out) {
+// Calls visit(cells) with where the cells around a vector of pixels lie.
+template <typename Visit>
+HWY_INLINE void AtCells(int x, int width, const Visit& visit) {
+  if (InnerCells::fit(x, width)) return visit(InnerCells(x));
+  visit(ScatteredCells(x, width));
+}
+
+void SpreadAlone(const SpreadLayer& layer, const FrameInput& guides, const Rect& tile) {
+  const ResidualCells& cells = layer.cells;
   const View view{cells, Rays(cells.guides.camera)};
   const Extent extent = cells.extent();
   ForEachVector(tile, [&](int x, int y) {
-    const int own = y / 2, other = std::clamp(own + 2 * (y & 1) - 1, 0, extent.height - 1);
-    Taker taker = LoadTaker(view, guides, x, y);
-    if (InnerCells::fit(x, extent.width)) {
-      TakeAround(view, InnerCells(x), own, other, taker);
-    } else {
-      TakeAround(view, ScatteredCells(x, extent.width), own, other, taker);
-    }
-    GiveTaker(taker, x, y, out);
+    const CellRows rows(y, extent.height);
+    const Taker taker = LoadTaker(view, guides, x, y);
+    AtCells(x, extent.width, [&](const auto& at) {
+      const Weights weights = WeighAround(view, at, rows, taker);
+      Give(TakeAround(cells, at, rows, weights), x, y, layer.out);
+    });
   });
+}
+
+// Weights of a row of pixels.
+struct WeightRow {
+  static constexpr int kPixels = kStripWidth;
+
+  alignas(64) float of[4][kPixels];
+};
+
+// At most kPixels of one row: weights first, then one layer after the other, which are streams of
+// memory of their own.
+void SpreadRow(std::span<const SpreadLayer> layers, const FrameInput& guides, const Rect& row) {
+  const ResidualCells& first = layers.front().cells;
+  const View view{first, Rays(first.guides.camera)};
+  const Extent extent = first.extent();
+  const CellRows rows(row.y0, extent.height);
+  WeightRow weights;
+  ForEachVector(row, [&](int x, int y) {
+    const Taker taker = LoadTaker(view, guides, x, y);
+    AtCells(x, extent.width, [&](const auto& at) {
+      const Weights found = WeighAround(view, at, rows, taker);
+      for (int i = 0; i < 4; ++i) Store(found.of[i], F(), weights.of[i] + x - row.x0);
+    });
+  });
+  for (const SpreadLayer& layer : layers) {
+    ForEachVector(row, [&](int x, int y) {
+      Weights found;
+      for (int i = 0; i < 4; ++i) found.of[i] = Load(F(), weights.of[i] + x - row.x0);
+      AtCells(x, extent.width, [&](const auto& at) {
+        Give(TakeAround(layer.cells, at, rows, found), x, y, layer.out);
+      });
+    });
+  }
+}
+
+void SpreadCells(std::span<const SpreadLayer> layers, const FrameInput& guides, const Rect& tile) {
+  if (layers.size() == 1) return SpreadAlone(layers.front(), guides, tile);
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    for (int x = tile.x0; x < tile.x1; x += WeightRow::kPixels) {
+      SpreadRow(layers, guides, {x, y, std::min(x + WeightRow::kPixels, tile.x1), y + 1});
+    }
+  }
 }
 
 }  // namespace
@@ -173,10 +255,9 @@ namespace eigenlight {
 
 HWY_EXPORT(SpreadCells);
 
-void spread_cells(const ResidualCells& cells, const FrameInput& guides, const Rect& tile,
-                  const SpreadOutputs& out) {
+void spread_cells(std::span<const SpreadLayer> layers, const FrameInput& guides, const Rect& tile) {
   const FloatTrapsOff lanes_behind_masks_may_hold_anything;
-  HWY_DYNAMIC_DISPATCH(SpreadCells)(cells, guides, tile, out);
+  HWY_DYNAMIC_DISPATCH(SpreadCells)(layers, guides, tile);
 }
 
 }  // namespace eigenlight

@@ -24,7 +24,8 @@ int valid_layers(int layers) {
 EigenDenoiser::EigenDenoiser(const DenoiserOptions& options, const EigenOptions& tuning)
     : options_(tuning),
       shared_(options.extent, tuning),
-      atrous_(options.extent, tuning.atrous, valid_layers(options.layers)) {
+      cell_filter_(options.extent, tuning.correction, valid_layers(options.layers)),
+      atrous_(options.extent, tuning.atrous, std::min(options.layers, Atrous::kMostImages)) {
   tuning.validate();
   for (int i = 0; i < options.layers; ++i) layers_.emplace_back(i, options, tuning);
   if (options.layers > 1) lowest_age_ = Plane<float>(options.extent);
@@ -41,7 +42,8 @@ const Planes<3>* EigenDenoiser::step(FrameSource& source) {
   ends(Stage::kBudget);
   resample(source, planned);
   ends(Stage::kResample);
-  // Layer by layer: each step finds in the cache what the steps before have left of its layer.
+  // Layer by layer, but for the correction, which is shared: each step finds in the cache what the
+  // steps before have left of its layer.
   for (LightLayer& layer : layers_) {
     layer.project();
     ends(Stage::kProject);
@@ -49,8 +51,10 @@ const Planes<3>* EigenDenoiser::step(FrameSource& source) {
     ends(Stage::kPredict);
     layer.bound(shared_);
     ends(Stage::kBound);
-    layer.correct(shared_);
-    ends(Stage::kCorrect);
+  }
+  if (options_.correct) correct();
+  ends(Stage::kCorrect);
+  for (LightLayer& layer : layers_) {
     layer.learn();
     ends(Stage::kLearn);
     layer.update(shared_);
@@ -112,10 +116,10 @@ void EigenDenoiser::warp_row(const Strip& row) {
 // A pixel is as young as its youngest layer.
 void EigenDenoiser::find_lowest_age(const Rect& row) {
   float* lowest = lowest_age_.at(row.x0, row.y0);
-  std::copy_n(layers_.front().old_age().at(row.x0, row.y0), row.width(), lowest);
-  for (const LightLayer& layer : layers_) {
-    const float* age = layer.old_age().at(row.x0, row.y0);
-    for (int i = 0; i < row.width(); ++i) lowest[i] = age[i] < lowest[i] ? age[i] : lowest[i];
+  const float* before = layers_.front().old_age().at(row.x0, row.y0);
+  for (std::size_t layer = 1; layer < layers_.size(); ++layer, before = lowest) {
+    const float* age = layers_[layer].old_age().at(row.x0, row.y0);
+    for (int i = 0; i < row.width(); ++i) lowest[i] = age[i] < before[i] ? age[i] : before[i];
   }
 }
 
@@ -129,11 +133,21 @@ void EigenDenoiser::resample(FrameSource& source, std::int64_t planned) {
   if (resampled_) report_.extra_samples = planned;
 }
 
-// The passes filter all layers at once.
+void EigenDenoiser::correct() {
+  std::vector<CorrectionLayer> ready;
+  for (LightLayer& layer : layers_) ready.push_back(layer.prepare_correction(shared_));
+  cell_filter_.correct(ready);
+}
+
+// The passes filter all layers at once, or as many as they can.
 void EigenDenoiser::filter() {
   std::vector<AtrousImage> images;
   for (LightLayer& layer : layers_) images.push_back(layer.image());
-  report_.skipped_filter = atrous_.process(frame(), options_.quiet_variance, images);
+  for (std::span<AtrousImage> left = images; !left.empty();) {
+    const auto some = left.first(std::min(left.size(), std::size_t{Atrous::kMostImages}));
+    report_.skipped_filter += atrous_.process(frame(), options_.quiet_variance, some);
+    left = left.subspan(some.size());
+  }
   for (LightLayer& layer : layers_) layer.keep_picture();
 }
 

@@ -45,6 +45,7 @@ class EigenDenoiser final : public Denoiser {
     return layers() == 1 ? layers_.front().old_age() : lowest_age_;
   }
   void resample(FrameSource& source, std::int64_t planned);
+  void correct();
   void filter();
   void finish_report();
   [[nodiscard]] const LightLayer& at(int layer) const {
@@ -53,6 +54,7 @@ class EigenDenoiser final : public Denoiser {
 
   EigenOptions options_;
   SharedFrame shared_;
+  CellFilter cell_filter_;
   std::deque<LightLayer> layers_;
   FrameReport report_;
   bool resampled_ = false;

@@ -158,14 +158,14 @@ void LightLayer::bound(const SharedFrame& shared) {
                               {residual_, innovation_}, count_again);
 }
 
-void LightLayer::correct(const SharedFrame& shared) {
-  corrected_share_ =
-      options_.correct ? correction_.smooth(correction_inputs(shared), innovation_) : 0.0;
+CorrectionLayer LightLayer::prepare_correction(const SharedFrame& shared) {
+  correction_.prepare(correction_inputs(shared));
+  return {correction_, shared.frame(), innovation_};
 }
 
 void LightLayer::learn() {
   coefficient_history_.learn(coefficients_, learning_rates_);
-  newborn_ = corrected_share_ > options_.birth_share ? coefficient_history_.free_slot() : 0;
+  newborn_ = correction_.share() > options_.birth_share ? coefficient_history_.free_slot() : 0;
 }
 
 void LightLayer::update(const SharedFrame& shared) {

@@ -47,8 +47,8 @@ class LightLayer {
   void predict(const SharedFrame& shared, bool resampled);
   /// bound: fireflies are scaled back.
   void bound(const SharedFrame& shared);
-  /// correct: what neighbors agree on and no basis explains.
-  void correct(const SharedFrame& shared);
+  /// correct: what neighbors agree on and no basis explains. CellFilter ends this step.
+  [[nodiscard]] CorrectionLayer prepare_correction(const SharedFrame& shared);
   /// learn: statistics of the coefficients, and whether a basis is born.
   void learn();
   /// update: the innovation test sets ages, and the bases are updated by the frame.
@@ -101,8 +101,7 @@ class LightLayer {
   OutputFilter filter_;
   CoefficientField coefficients_, learning_rates_;
   PerTile<TileSums> sums_;
-  double corrected_share_ = 0.0;  // of the pixels with history
-  int newborn_ = 0;               // basis that is born in this frame, or 0
+  int newborn_ = 0;  // basis that is born in this frame, or 0
 
   PerTile<PixelCounts> counts_;  // fresh and non-finite ones
   std::int64_t bounded_ = 0, skipped_guided_ = 0;

@@ -139,7 +139,7 @@ TEST(Atrous, FiltersSelectedTilesOnly) {
   Atrous atrous(extent, {.passes = 1});
   PerTile<std::uint8_t> wanted(stage_tiles(extent));
   wanted[1] = 1;
-  atrous.process(some.guides, wanted, some.color, some.variance);
+  atrous.process(std::array{AtrousPart{some.guides, wanted, some.color, some.variance}});
   all.run({.passes = 1});
   for (int y = 0; y < 32; ++y) {
     for (int x = 0; x < 128; ++x) {
@@ -148,8 +148,8 @@ TEST(Atrous, FiltersSelectedTilesOnly) {
     }
   }
   const PerTile<std::uint8_t> others(stage_tiles({128, 48}));
-  EXPECT_THROW(atrous.process(some.guides, others, some.color, some.variance),
-               std::invalid_argument);
+  const AtrousPart part{some.guides, others, some.color, some.variance};
+  EXPECT_THROW(atrous.process(std::array{part}), std::invalid_argument);
 }
 
 TEST(Atrous, ConstantLightStaysConstant) {

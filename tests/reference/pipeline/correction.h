@@ -98,7 +98,7 @@ inline PerTile<double> open_gates(const Residual& r, const TileGrid& grid) {
   return gate;
 }
 
-/// Correction::smooth(): fills r.correction, and subtracts its luminance from r.innovation.
+/// CellFilter::correct(): fills r.correction, and subtracts its luminance from r.innovation.
 inline void correct(const CorrectionOptions& options, const FrameInput& frame, Residual& r) {
   const Extent extent = r.age.extent();
   const TileGrid grid(extent, kCoefficientTile, kCoefficientTile);

@@ -3,11 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include "frame/float_traps.h"
 #include "tests/support/compare.h"
 #include "tests/support/extents.h"
+#include "tests/support/kernel_test.h"
 #include "tests/support/random_frames.h"
 
 namespace eigenlight {
@@ -51,6 +54,12 @@ struct Scene {
   [[nodiscard]] CorrectionInputs in() const {
     return {guides, residual, innovation, age, samples, variance};
   }
+  double smooth(Correction& correction) {
+    correction.prepare(in());
+    CellFilter(innovation.extent(), {})
+        .correct(std::array{CorrectionLayer{correction, guides, innovation}});
+    return correction.share();
+  }
   double run() {
     Correction correction(innovation.extent(), {});
     return run(correction);
@@ -60,7 +69,7 @@ struct Scene {
     const Rect all{0, 0, innovation.width(), innovation.height()};
     correction.read_geometry(guides.surface, all);
     correction.count_blocks(in(), all);
-    const double share = correction.smooth(in(), innovation);
+    const double share = smooth(correction);
     for (std::size_t c = 0; c < 3; ++c) {
       for (int y = 0; y < prediction[c].height(); ++y) {
         for (int x = 0; x < prediction[c].width(); ++x) {
@@ -188,6 +197,39 @@ TEST(Correction, PlacingCellsEarlyDoesNotChangeTheBits) {
   }
 }
 
+// Layers whose light changes elsewhere, of which one lacks the history of some pixels.
+TEST(CellFilter, LayersGetTheBitsThatTheyGetAlone) {
+  const Extent extent{600, 140};
+  const auto make = [&](int layer) {
+    Scene scene(extent);
+    scene.set_light(2.0f + static_cast<float>(layer), 150 * layer);
+    for (int x = 0; layer == 1 && x < 20; ++x) {
+      for (int y = 60; y < 70; ++y) scene.innovation(400 + x, y) = std::nanf("");
+    }
+    return scene;
+  };
+  on_every_target([&] {
+    std::array together{make(0), make(1), make(2)};
+    std::array corrections{Correction(extent, {}), Correction(extent, {}), Correction(extent, {})};
+    CellFilter filter(extent, {}, 3);
+    std::vector<CorrectionLayer> layers;
+    for (std::size_t i = 0; i < 3; ++i) {
+      corrections[i].count_blocks(together[i].in(), {0, 0, extent.width, extent.height});
+      corrections[i].prepare(together[i].in());
+      layers.push_back({corrections[i], together[i].guides, together[i].innovation});
+    }
+    filter.correct(layers);
+    for (std::size_t i = 0; i < 3; ++i) {
+      Scene alone = make(static_cast<int>(i));
+      Correction own(extent, {});
+      EXPECT_EQ(corrections[i].share(), alone.run(own));
+      EXPECT_GT(own.share(), 0.0);
+      EXPECT_TRUE(planes_equal(corrections[i].correction(), own.correction())) << i;
+      EXPECT_TRUE(planes_equal(together[i].innovation, alone.innovation)) << i;
+    }
+  });
+}
+
 TEST(Correction, ChangedBlocksAreCountedAgain) {
   const Extent extent{191, 107};
   Correction again(extent, {}), once(extent, {});
@@ -206,7 +248,7 @@ TEST(Correction, ChangedBlocksAreCountedAgain) {
     again.count_blocks(changed.in(),
                        {x, y, std::min(x + 8, extent.width), std::min(y + 8, extent.height)});
   }
-  EXPECT_EQ(again.smooth(changed.in(), changed.innovation), wanted.run(once));
+  EXPECT_EQ(changed.smooth(again), wanted.run(once));
   EXPECT_TRUE(planes_equal(changed.innovation, wanted.innovation));
 }
 
@@ -229,6 +271,7 @@ TEST(CorrectionOptions, RejectsValuesOutOfRange) {
   const FloatTrapsOff nan_is_meant;
   const auto refused = [](const CorrectionOptions& options) {
     EXPECT_THROW(Correction({8, 8}, options), std::invalid_argument);
+    EXPECT_THROW(CellFilter({8, 8}, options), std::invalid_argument);
   };
   refused({.significance = -1.0f});
   refused({.significance = std::nanf("")});

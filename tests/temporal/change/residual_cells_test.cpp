@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -53,7 +54,7 @@ struct Scene {
   }
   void spread() {
     for_each_tile(TileGrid(guides.extent(), 32, 32), [&](const Rect& tile) {
-      spread_cells(cells, guides, tile, {correction, innovation});
+      spread_cells(std::array{SpreadLayer{cells, {correction, innovation}}}, guides, tile);
     });
   }
 
