@@ -59,8 +59,10 @@ void plan_lookahead(const DenoiseSettings& settings, DenoisePlan& plan) {
   EL_CHECK(settings.lookahead >= 0 && settings.lookahead <= kMostLookahead,
            "lookahead {}: expected 0 to {}", settings.lookahead, kMostLookahead);
   const MemoryPlan memory = plan_memory(plan.layers);
-  const double most =
-      settings.max_memory.empty() ? 0.8 * machine_memory() : parse_memory(settings.max_memory);
+  // A run that nobody limits is tried, whatever the machine has.
+  const double most = settings.max_memory.empty()
+                          ? std::max(0.8 * machine_memory(), memory.bytes(plan.canvas, 0))
+                          : parse_memory(settings.max_memory);
   plan.lookahead = fit_lookahead(memory, plan.canvas, settings.lookahead, most);
   const double bytes = memory.bytes(plan.canvas, plan.lookahead);
   plan.notes.push_back(
