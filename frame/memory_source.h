@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "frame/frame.h"
@@ -34,6 +35,26 @@ class MemorySource final : public FrameSource {
   Resample resample_;
   bool repeats_ = false;
   int handed_out_ = 0;
+};
+
+/// Hands out one frame, once, and leaves the planes that it takes in exchange in its place.
+class OneFrameSource final : public FrameSource {
+ public:
+  /// `frame` must outlive this.
+  explicit OneFrameSource(Frame& frame) : frame_(&frame) {}
+
+  [[nodiscard]] bool next(Frame& frame) override {
+    if (!frame_) return false;
+    std::swap(frame, *std::exchange(frame_, nullptr));
+    return true;
+  }
+  [[nodiscard]] bool resample(const Plane<std::uint8_t>&, FrameInput&,
+                              std::span<Planes<3>* const>) override {
+    return false;
+  }
+
+ private:
+  Frame* frame_;
 };
 
 }  // namespace eigenlight

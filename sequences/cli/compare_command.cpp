@@ -70,9 +70,9 @@ class CompareJob {
       const OpenCase open = open_case(one);
       const ReferenceCache references(plan_.cache, identity_of(one, open));
       CaseResults of_case{one, open.scene.title, open.hash, references.path().string(), {}};
-      if (!complete_references(one, open, references)) return stopped();
+      if (!complete_references(one, open, references)) return job_.stopped();
       for (const int spp : plan_.spp) {
-        if (!measure({one, open, references, spp}, store, of_case)) return stopped();
+        if (!measure({one, open, references, spp}, store, of_case)) return job_.stopped();
       }
       const ComparePictures pictures = scene_pictures(
           plan_, references, plan_.directory / "frames" / one.name, open.scene.exposure);
@@ -105,11 +105,6 @@ class CompareJob {
   [[nodiscard]] bool measure(const Task& task, const CellStore& store, CaseResults& results) const;
   [[nodiscard]] bool measure_missing(const Task& task, const std::vector<const Contender*>& missing,
                                      const CellStore& store) const;
-  [[nodiscard]] int stopped() const {
-    job_.say(
-        fmt::format("stopped; what is complete is kept; to go on:\n  {}", job_.command_line()));
-    return kInterrupted;
-  }
 
   const Job& job_;
   std::string markdown_;  // as add_markdown_option() leaves it

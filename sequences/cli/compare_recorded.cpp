@@ -51,7 +51,7 @@ class RecordedJob {
     CaseResults results{
         plan_.cases.front(), plan_.recorded->denoise.files.inputs.front(), 0, "", {}};
     for (const Contender& contender : plan_.contenders) {
-      if (!complete(contender, run, store)) return stopped();
+      if (!complete(contender, run, store)) return job_.stopped();
       std::optional<Cell> cell = store.load(identity_of(contender));
       if (!cell) throw std::logic_error("a cell that was saved is there");
       results.cells.push_back(std::move(*cell));
@@ -89,11 +89,6 @@ class RecordedJob {
     return std::all_of(plan_.measured.begin(), plan_.measured.end(), [&](int frame) {
       return fs::exists(recorded_folder(plan_, contender) / pattern.name(frame));
     });
-  }
-  [[nodiscard]] int stopped() const {
-    job_.say(
-        fmt::format("stopped; what is complete is kept; to go on:\n  {}", job_.command_line()));
-    return kInterrupted;
   }
 
   const Job& job_;

@@ -37,7 +37,7 @@ void add_file_options(CLI::App& command, DenoiseCommand& options) {
   command
       .add_option("--lookahead", options.settings.lookahead,
                   "How many later frames may help a frame; 0: none")
-      ->check(CLI::Range(0, 64))
+      ->check(CLI::Range(0, kMostLookahead))
       ->capture_default_str();
   command.add_option("--max-memory", options.settings.max_memory,
                      "Such as 8G: look ahead no farther than fits [four fifths of the machine's]");

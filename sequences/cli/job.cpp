@@ -1,8 +1,11 @@
 #include "sequences/cli/job.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 
 #include "frame/tiles.h"
+#include "sequences/cli/command.h"
 
 namespace eigenlight {
 
@@ -48,6 +51,11 @@ void Job::print_results(std::string_view json, std::string_view text) const {
   } else if (!options_.quiet) {
     console_.out << text << std::flush;
   }
+}
+
+int Job::stopped() const {
+  say(fmt::format("stopped; what is complete is kept; to go on:\n  {}", command_line()));
+  return kInterrupted;
 }
 
 }  // namespace eigenlight

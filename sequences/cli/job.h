@@ -42,6 +42,8 @@ class Job {
   [[nodiscard]] bool interrupted() const { return interrupt_.interrupted(); }
   /// Does nothing before Ctrl-C; after it, says `text` and throws Interrupted.
   void stop_if_interrupted(std::string_view text) const;
+  /// Says that what is complete is kept, and the command that goes on. Gives kInterrupted.
+  [[nodiscard]] int stopped() const;
 
   /// A progress report of `total` frames, of which `done` were complete before.
   [[nodiscard]] Progress progress(std::size_t done, std::size_t total) const;

@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "frame/memory_source.h"
 #include "sequences/compare/compare_run.h"
-#include "sequences/denoise/ready_frame.h"
 #include "sequences/exr/exr_rewrite.h"
 #include "temporal/methods.h"
 #include "temporal/stage_clock.h"
@@ -38,8 +38,7 @@ double RecordedMethod::step(const std::shared_ptr<const RawFrame>& raw) {
       std::swap(frame_.lights[0], lights[i]);
       copy_frame(frame_, single_);
       std::swap(frame_.lights[0], lights[i]);
-      ReadySource source;
-      source.set(&single_);
+      OneFrameSource source(single_);
       Denoiser& denoiser = *view.denoisers[i];
       view.outputs.push_back(denoiser.step(source));
       if (!view.outputs.back()) throw std::logic_error("a frame was lost");
@@ -67,12 +66,8 @@ std::vector<fs::path> write_channels(const RawFrame& raw, const FrameFiles& file
       paths.push_back(files.inputs[i]);
       continue;
     }
-    std::vector<ExrReplacement> replacements;
-    for (const NewChannel& channel : channels[i]) {
-      replacements.push_back({channel.channel, &channel.values});
-    }
     paths.push_back(folder / fmt::format("{}-{}", i, files.inputs[i].filename().string()));
-    rewrite_exr(*raw.files[i], paths.back(), replacements);
+    rewrite_exr(*raw.files[i], paths.back(), replacements_of(channels[i]));
   }
   return paths;
 }

@@ -16,13 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_exr(const std::string& name) {
-  std::string end = fs::path(name).extension().string();
-  std::transform(end.begin(), end.end(), end.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return end == ".exr";
-}
-
 // `shot.####.exr` gives `shot`.
 std::string shot_word(const std::string& pattern) {
   std::string name = fs::path(pattern).filename().string();
@@ -48,8 +41,9 @@ void check_contenders(const std::vector<Contender>& contenders) {
 
 void check_settings(const CompareSettings& settings) {
   for (const std::string& input : settings.scenes) {
-    EL_CHECK(is_exr(input), "scene '{}': recorded frames such as '{}' are compared without scenes",
-             input, *std::find_if(settings.scenes.begin(), settings.scenes.end(), is_exr));
+    EL_CHECK(is_exr_name(input),
+             "scene '{}': recorded frames such as '{}' are compared without scenes", input,
+             *std::find_if(settings.scenes.begin(), settings.scenes.end(), is_exr_name));
     EL_CHECK(!SequenceName(input).is_single(),
              "'{}': expected a pattern such as shot.####.exr for recorded frames", input);
   }
@@ -134,7 +128,7 @@ RecordedShot make_shot(const CompareSettings& settings) {
 }  // namespace
 
 bool is_recorded(const CompareSettings& settings) {
-  return std::any_of(settings.scenes.begin(), settings.scenes.end(), is_exr);
+  return std::any_of(settings.scenes.begin(), settings.scenes.end(), is_exr_name);
 }
 
 Planes<3> read_shot_layer(const std::vector<fs::path>& files, const std::string& layer) {

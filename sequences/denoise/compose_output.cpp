@@ -56,6 +56,14 @@ float sum_value(const SumChannels& in, const std::vector<const Plane<float>*>& l
 
 }  // namespace
 
+std::vector<ExrReplacement> replacements_of(std::span<const NewChannel> channels) {
+  std::vector<ExrReplacement> replacements;
+  for (const NewChannel& channel : channels) {
+    replacements.push_back({channel.channel, &channel.values});
+  }
+  return replacements;
+}
+
 void compose_view(const RawFrame& frame, const ViewPlan& view, const ExrWindow& canvas,
                   std::span<const Planes<3>* const> lights,
                   std::vector<std::vector<NewChannel>>& outputs) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sequences/denoise/raw_frame.h"
+#include "sequences/exr/exr_rewrite.h"
 
 namespace eigenlight {
 
@@ -13,6 +14,9 @@ struct NewChannel {
   int channel = 0;      ///< of ExrFile::channels()
   Plane<float> values;  ///< of the channel's data window
 };
+
+/// As rewrite_exr() takes them; they refer to `channels`.
+[[nodiscard]] std::vector<ExrReplacement> replacements_of(std::span<const NewChannel> channels);
 
 /// The new channels of a frame, for each input. `lights` are the denoised layers of a view in the
 /// order of its plan: light over its color, on the canvas.

@@ -12,11 +12,12 @@
 #include "sequences/denoise/frame_builder.h"
 #include "sequences/denoise/sequence_files.h"
 #include "temporal/denoiser.h"
+#include "temporal/gather/gather.h"
 
 namespace eigenlight {
 
 /// Most later frames that may help a frame.
-inline constexpr int kMostLookahead = 64;
+inline constexpr int kMostLookahead = kMostGathered;
 
 /// What the user asks for.
 struct DenoiseSettings {

@@ -5,6 +5,7 @@
 
 #include "frame/check.h"
 #include "sequences/denoise/raw_frame.h"
+#include "temporal/gather/window_denoiser.h"
 
 namespace eigenlight {
 namespace {
@@ -13,18 +14,18 @@ namespace {
 constexpr double kInFlight = 7.0;
 // Of the loop, the filters and checkpoints, for a layer of light; and of the guides of a frame and
 // its links to others.
-constexpr double kDenoiserBytes = 600.0, kGuideBytes = 48.0;
+constexpr double kDenoiserBytes = 600.0;
+constexpr double kGuideBytes = sizeof(PackedGuide) + 2 * sizeof(Link);
 // Bytes that a layer of light leaves for other frames, and those of an estimate.
-constexpr double kRecordBytes = 32.0, kEstimateBytes = 20.0;
+constexpr double kRecordBytes = sizeof(RecordedLight), kEstimateBytes = 5 * sizeof(float);
 // Memory that was measured for a later frame, over what was counted.
 constexpr double kOver = 1.15;
-// Earlier frames that direct light is gathered from.
-constexpr double kPastFrames = 4.0;
 
 }  // namespace
 
 MemoryPlan plan_memory(const LayerPlan& layers) {
   MemoryPlan plan;
+  const double past = WindowOptions().past;
   for (const ViewPlan& view : layers.views) {
     double channels = 0.0, lights = 0.0, direct = 0.0;
     std::set<std::string> counted;
@@ -40,7 +41,7 @@ MemoryPlan plan_memory(const LayerPlan& layers) {
     const double raw = 4.0 * channels, frame = 4.0 * (26.0 + 3.0 * lights);
     const double record = kGuideBytes + kRecordBytes * lights;
     plan.fixed += kInFlight * raw + 0.5 * kInFlight * frame + record + kDenoiserBytes * lights +
-                  kPastFrames * (kGuideBytes + kRecordBytes * direct);
+                  past * (kGuideBytes + kRecordBytes * direct);
     plan.per_frame += kOver * (raw + record + kEstimateBytes * (lights - direct));
   }
   return plan;

@@ -51,14 +51,10 @@ void OutputWriter::write(const FinishedFrame& frame, DenoiseRecord& record) {
   StageClock clock;
   const FrameFiles& paths = plan_.frames[frame.index];
   for (std::size_t i = 0; i < paths.outputs.size(); ++i) {
-    std::vector<ExrReplacement> replacements;
-    for (const NewChannel& channel : frame.outputs[i]) {
-      replacements.push_back({channel.channel, &channel.values});
-    }
     const fs::path folder = paths.outputs[i].parent_path();
     if (!folder.empty()) make_directory(folder);
     const ExrRewriteReport report =
-        rewrite_exr(*frame.raw->files[i], paths.outputs[i], replacements);
+        rewrite_exr(*frame.raw->files[i], paths.outputs[i], replacements_of(frame.outputs[i]));
     totals_.clamped += report.values.clamped;
     record.clamped += report.values.clamped;
     add_notes(report.recompressed);

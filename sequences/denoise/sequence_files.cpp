@@ -42,13 +42,6 @@ std::vector<int> existing_frames(const SequenceName& input) {
   throw std::runtime_error(line);
 }
 
-bool is_exr(const std::string& name) {
-  std::string end = fs::path(name).extension().string();
-  std::transform(end.begin(), end.end(), end.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return end == ".exr";
-}
-
 fs::path real(const fs::path& path) {
   std::error_code error;
   const fs::path full = fs::weakly_canonical(path, error);
@@ -79,7 +72,7 @@ void check_outputs(const std::vector<FrameFiles>& frames, bool overwrite) {
 
 std::vector<FrameFiles> find_sequence(const FileChoice& choice) {
   const std::vector<SequenceName> inputs(choice.inputs.begin(), choice.inputs.end());
-  const bool to_file = is_exr(choice.output);
+  const bool to_file = is_exr_name(choice.output);
   if (to_file && inputs.size() > 1) {
     throw std::invalid_argument(
         fmt::format("-o {}: expected a folder, for there are several inputs", choice.output));

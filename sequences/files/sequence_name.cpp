@@ -32,4 +32,11 @@ std::vector<int> SequenceName::frames() const {
   return frames;
 }
 
+bool is_exr_name(const std::filesystem::path& name) {
+  std::string end = name.extension().string();
+  std::transform(end.begin(), end.end(), end.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return end == ".exr";
+}
+
 }  // namespace eigenlight

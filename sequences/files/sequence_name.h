@@ -29,4 +29,7 @@ class SequenceName {
   std::optional<FilePattern> pattern_;  // of the last part of the path
 };
 
+/// Whether a name ends in .exr, in any case.
+[[nodiscard]] bool is_exr_name(const std::filesystem::path& name);
+
 }  // namespace eigenlight

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "frame/check.h"
+#include "frame/memory_source.h"
 #include "temporal/stage_clock.h"
 
 namespace eigenlight {
@@ -28,22 +29,6 @@ T take(std::vector<T>& spare) {
   spare.pop_back();
   return value;
 }
-
-class OneFrame final : public FrameSource {
- public:
-  explicit OneFrame(Frame& frame) : frame_(frame) {}
-  [[nodiscard]] bool next(Frame& frame) override {
-    std::swap(frame, frame_);
-    return true;
-  }
-  [[nodiscard]] bool resample(const Plane<std::uint8_t>&, FrameInput&,
-                              std::span<Planes<3>* const>) override {
-    return false;
-  }
-
- private:
-  Frame& frame_;
-};
 
 }  // namespace
 
@@ -146,7 +131,7 @@ void WindowDenoiser::push(Frame& frame) {
   StageClock clock;
   Record& record = add_record(frame);
   const StageTime recorded = clock.lap();
-  OneFrame source(frame);
+  OneFrameSource source(frame);
   if (!eigen_.step(source)) throw std::logic_error("the loop did not take a frame");
   record.report = eigen_.report();
   (void)clock.lap();
