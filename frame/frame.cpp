@@ -36,10 +36,11 @@ void copy_frame(const Frame& from, Frame& to) {
   copy_plane(id, to.surface.id);
   to.lights.resize(lights.size());
   for (std::size_t i = 0; i < lights.size(); ++i) {
-    const auto& [radiance, color, is_direct] = lights[i];
+    const auto& [radiance, color, is_direct, is_glossy] = lights[i];
     copy_plane(radiance, to.lights[i].radiance);
     copy_plane(color, to.lights[i].color);
     to.lights[i].is_direct = is_direct;
+    to.lights[i].is_glossy = is_glossy;
   }
   copy_plane(motion, to.motion);
   copy_plane(previous_depth, to.previous_depth);

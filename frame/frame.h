@@ -32,6 +32,8 @@ struct NoisyLight {
   Planes<3> color;     ///< what a picture multiplies it by; empty: the albedo of the surface
   /// Direct light: its edges are sharp, move over surfaces and are in no guide.
   bool is_direct = false;
+  /// Reflections and what is seen through glass: it moves otherwise than the surface.
+  bool is_glossy = false;
 };
 
 /// Most layers of light that a frame holds. Each has its own history: memory and time grow with

@@ -39,12 +39,6 @@ std::string describe(const DenoiseSettings& settings, const DenoisePlan& plan) {
   return json.dump();
 }
 
-// A state of the denoisers, until the frames before it are written.
-struct Snapshot {
-  std::size_t frame = 0;  // the last one that was pushed
-  std::vector<char> state;
-};
-
 class Run {
  public:
   Run(const DenoiseSettings& settings, const DenoisePlan& plan, const DenoiseCallbacks& callbacks)
@@ -56,8 +50,7 @@ class Run {
       const ViewPlan& view = plan.layers.views[v];
       builders_.emplace_back(view, plan.readings[v], plan.canvas, plan.cuts);
       denoisers_.push_back(std::make_unique<WindowDenoiser>(
-          DenoiserOptions{.extent = {plan.canvas.width, plan.canvas.height},
-                          .layers = static_cast<int>(view.lights.size())},
+          Extent{plan.canvas.width, plan.canvas.height}, static_cast<int>(view.lights.size()),
           options));
     }
   }
@@ -70,9 +63,8 @@ class Run {
   [[nodiscard]] std::size_t first_read() const;
   void denoise_frames(OutputWriter& writer);
   [[nodiscard]] bool push_frame();
-  void take_snapshot();
+  [[nodiscard]] bool is_checkpoint_due();
   FinishedFrame denoise(std::size_t index);
-  [[nodiscard]] std::vector<char> state() const;
   [[nodiscard]] bool is_complete(std::size_t index) const;
   void finish();
 
@@ -85,7 +77,6 @@ class Run {
   std::deque<ReadyFrame> pushed_;  // frames that the denoisers hold and have not denoised
   std::size_t position_ = 0;       // frames that were complete before
   std::size_t next_push_ = 0;
-  Snapshot snapshot_;
   Clock::time_point saved_ = Clock::now();
   std::string description_;
   DenoiseTotals totals_;  // the writer's while it runs
@@ -103,9 +94,6 @@ void Run::load() {
   for (std::size_t i = 0; i < checkpoint.position; ++i) {
     check_complete(path, plan_.frames[i].frame, plan_.frames[i].outputs);
   }
-  restore_state(path, checkpoint, [&](StateReader& reader) {
-    for (const auto& denoiser : denoisers_) denoiser->load(reader);
-  });
   position_ = checkpoint.position;
 }
 
@@ -136,12 +124,6 @@ void Run::read_frames() {
   }
 }
 
-std::vector<char> Run::state() const {
-  StateWriter writer;
-  for (const auto& denoiser : denoisers_) denoiser->save(writer);
-  return writer.bytes();
-}
-
 bool Run::is_complete(std::size_t index) const {
   const std::vector<fs::path>& outputs = plan_.frames[index].outputs;
   return std::all_of(outputs.begin(), outputs.end(), is_complete_exr);
@@ -161,7 +143,6 @@ bool Run::push_frame() {
   if (next_push_ >= position_) {
     ready->views.clear();
     pushed_.push_back(std::move(*ready));
-    take_snapshot();
   }
   ++next_push_;
   if (next_push_ == plan_.frames.size()) {
@@ -170,13 +151,11 @@ bool Run::push_frame() {
   return true;
 }
 
-// The denoisers are ahead of the files by the lookahead: their state becomes a checkpoint when the
-// frame that was pushed last is written.
-void Run::take_snapshot() {
+bool Run::is_checkpoint_due() {
   const std::chrono::duration<double> interval(settings_.checkpoint_seconds);
-  if (!snapshot_.state.empty() || Clock::now() - saved_ < interval) return;
-  snapshot_ = {next_push_, state()};
+  if (Clock::now() - saved_ < interval) return false;
   saved_ = Clock::now();
+  return true;
 }
 
 FinishedFrame Run::denoise(std::size_t index) {
@@ -212,11 +191,7 @@ void Run::denoise_frames(OutputWriter& writer) {
     finished.is_written = !settings_.skip_existing || !is_complete(i);
     stops = callbacks_.interrupted();
     const bool is_last = i + 1 == plan_.frames.size();
-    if (!is_last && stops && next_push_ == i + 1) {
-      finished.state = state();
-    } else if (!is_last && !snapshot_.state.empty() && snapshot_.frame == i) {
-      finished.state = std::exchange(snapshot_.state, {});
-    }
+    finished.is_checkpoint = !is_last && (is_checkpoint_due() || stops);
     if (!writer.push(std::move(finished))) return;
   }
 }

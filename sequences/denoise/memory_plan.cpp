@@ -12,12 +12,12 @@ namespace {
 
 // Frames that are read, computed, composed and written at one time.
 constexpr double kInFlight = 7.0;
-// Of the loop, the filters and checkpoints, for a layer of light; and of the guides of a frame and
-// its links to others.
-constexpr double kDenoiserBytes = 600.0;
+// Of the filters, for a layer of light: pilot and output, each with its buffers.
+constexpr double kFilterBytes = 2.0 * 13.0 * sizeof(float);
+// Guides of a frame and its links to others.
 constexpr double kGuideBytes = sizeof(PackedGuide) + 2 * sizeof(Link);
-// Bytes that a layer of light leaves for other frames, and those of an estimate.
-constexpr double kRecordBytes = sizeof(RecordedLight), kEstimateBytes = 5 * sizeof(float);
+// What layers of light and their colors leave for other frames.
+constexpr double kRecordBytes = sizeof(RecordedLight), kColorBytes = sizeof(PackedColor);
 // Memory that was measured for a later frame, over what was counted.
 constexpr double kOver = 1.15;
 
@@ -27,8 +27,8 @@ MemoryPlan plan_memory(const LayerPlan& layers) {
   MemoryPlan plan;
   const double past = WindowOptions().past;
   for (const ViewPlan& view : layers.views) {
-    double channels = 0.0, lights = 0.0, direct = 0.0;
-    std::set<std::string> counted;
+    double channels = 0.0, lights = 0.0;
+    std::set<std::string> counted, colors;
     for (const FileLayer* layer : layers_read(view)) {
       if (counted.insert(key_of(*layer)).second) {
         channels += static_cast<double>(layer->channels.size());
@@ -36,13 +36,14 @@ MemoryPlan plan_memory(const LayerPlan& layers) {
     }
     for (const PlannedLight& light : view.lights) {
       lights += 1.0;
-      direct += light.is_direct ? 1.0 : 0.0;
+      if (light.color) colors.insert(key_of(*light.color));
     }
     const double raw = 4.0 * channels, frame = 4.0 * (26.0 + 3.0 * lights);
-    const double record = kGuideBytes + kRecordBytes * lights;
-    plan.fixed += kInFlight * raw + 0.5 * kInFlight * frame + record + kDenoiserBytes * lights +
-                  past * (kGuideBytes + kRecordBytes * direct);
-    plan.per_frame += kOver * (raw + record + kEstimateBytes * (lights - direct));
+    const double record =
+        kGuideBytes + kRecordBytes * lights + kColorBytes * static_cast<double>(colors.size());
+    plan.fixed += kInFlight * raw + 0.5 * kInFlight * frame + kFilterBytes * lights +
+                  (1.0 + past) * record;
+    plan.per_frame += kOver * (raw + record);
   }
   return plan;
 }

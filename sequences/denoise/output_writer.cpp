@@ -74,8 +74,8 @@ void OutputWriter::run() {
         ++totals_.skipped;
       }
       if (callbacks_.record) callbacks_.record(record);
-      if (!frame->state.empty()) {
-        write_checkpoint(checkpoint_path(plan_), {description_, frame->index + 1, frame->state});
+      if (frame->is_checkpoint) {
+        write_checkpoint(checkpoint_path(plan_), {description_, frame->index + 1, {}});
       }
       callbacks_.frame_done(plan_.frames[frame->index].frame);
     }

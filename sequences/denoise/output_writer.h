@@ -20,14 +20,14 @@ struct FinishedFrame {
   std::size_t index = 0;
   bool is_written = true;  ///< its outputs are not there yet
   DenoiseRecord record;
-  std::vector<char> state;  ///< of the denoisers behind this frame; empty: no checkpoint is due
+  bool is_checkpoint = false;  ///< a run can go on behind it: its position is written
 };
 
 /// Where the checkpoint of a run is.
 [[nodiscard]] std::filesystem::path checkpoint_path(const DenoisePlan& plan);
 
-/// Writes frames in the order of push(): the outputs, and a checkpoint behind them where the frame
-/// holds a state.
+/// Writes frames in the order of push(): the outputs, and a checkpoint behind them where one is due.
+/// It holds no state, for the denoisers have none.
 class OutputWriter {
  public:
   /// `description` tells the run from others. All must outlive the writer.

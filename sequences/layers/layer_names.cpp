@@ -91,6 +91,10 @@ constexpr std::array kLights{
     LightName{"indirect", "diffuse indirect", "albedo", false, ""},
 };
 
+// Beginnings of LightName::what.
+constexpr std::array<std::string_view, 6> kGlossy{"glossy",       "specular",   "coat",
+                                                  "transmission", "reflection", "refraction"};
+
 }  // namespace
 
 std::string_view role_name(Role role) {
@@ -106,6 +110,11 @@ std::string layer_word(std::string_view name) {
     if (c != ' ' && c != '_' && c != '-') word += static_cast<char>(std::tolower(c));
   }
   return word;
+}
+
+bool is_glossy(std::string_view what) {
+  return std::any_of(kGlossy.begin(), kGlossy.end(),
+                     [&](std::string_view kind) { return what.starts_with(kind); });
 }
 
 const LightName* find_light(std::string_view word) {

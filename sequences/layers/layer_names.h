@@ -35,6 +35,9 @@ struct LightName {
   bool is_direct = false;  ///< its edges, those of shadows, are in no guide
 };
 
+/// Light that moves otherwise than the surface on which it is seen: glossy, coat, transmission.
+[[nodiscard]] bool is_glossy(std::string_view what);
+
 /// The last word of a layer's name, in lower case and without blanks, `_` and `-`:
 /// `ViewLayer.Denoising Albedo` gives `denoisingalbedo`.
 [[nodiscard]] std::string layer_word(std::string_view name);

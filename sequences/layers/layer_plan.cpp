@@ -24,7 +24,7 @@ LayerPlanner::LayerPlanner(const std::vector<FileLayer>& layers, const LayerChoi
 
 void LayerPlanner::add_light(ViewPlan& plan, std::size_t index, const LightName& name) {
   PlannedLight light{std::string(name.what), layers_[index], std::nullopt, name.is_divided,
-                     name.is_direct};
+                     name.is_direct, is_glossy(name.what)};
   std::optional<std::size_t> color;
   if (!name.color.empty()) color = find_word(plan.view, name.color);
   if (color && !why_unusable(layers_[*color], 3).empty()) color.reset();

@@ -27,6 +27,7 @@ struct PlannedLight {
   std::optional<FileLayer> color;  ///< what it is multiplied by, or its albedo; none: 1
   bool is_divided = false;         ///< the file has it without `color`
   bool is_direct = false;          ///< NoisyLight::is_direct
+  bool is_glossy = false;          ///< NoisyLight::is_glossy
   bool is_alpha = false;           ///< the alpha of beauty, in [0, 1]; part of no sum
 };
 

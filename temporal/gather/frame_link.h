@@ -20,6 +20,10 @@ inline constexpr float kLeastMatch = 0.05f;
 /// these are not finite, or a depth is not positive.
 void link_back(const FrameInput& frame, FrameLink& link);
 
+/// Pixels of a surface that the frame before, with the guides `before`, does not show.
+[[nodiscard]] std::int64_t count_new(const FrameLink& back, const Plane<PackedGuide>& guides,
+                                     const Plane<PackedGuide>& before, const GuideWidths& widths);
+
 /// From the frame before to a frame that knows only where its own pixels came from: `back` turned
 /// around. A pixel takes the link of that pixel which came closest to its center and is like it by
 /// guides. Where none came (it is hidden, or left the picture) its place is unknown; gaps of a

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "frame/check.h"
 #include "frame/tiles.h"
@@ -11,194 +12,235 @@ namespace {
 
 // Below the square of any light that can be seen.
 constexpr float kTiny = 1e-12f;
+constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+constexpr int kTile = 32;
+// Pixels around a tile that its tests read.
+constexpr int kAround = 2;
+constexpr std::array<float, 5> kTent{1.0f, 2.0f, 3.0f, 2.0f, 1.0f};
 
-struct Place {
-  float x, y, log_depth;
-};
-
-struct Taps {
-  std::array<int, 4> x, y;
-  std::array<float, 4> weight;
-  float total;
-};
-
-// Sets the four pixels around a place. False where none matches.
-bool find_taps(const Plane<PackedGuide>& there, const PackedGuide& guide, const Place& place,
-               const GuideWidths& widths, Taps& taps) {
-  const Extent extent = there.extent();
-  if (!(place.x > -1.0f && place.y > -1.0f && place.x < static_cast<float>(extent.width) &&
-        place.y < static_cast<float>(extent.height))) {
-    return false;
-  }
-  const float left = std::floor(place.x), top = std::floor(place.y);
-  const float fx = place.x - left, fy = place.y - top;
-  const std::int32_t steps = depth_steps(place.log_depth, widths);
-  taps.total = 0.0f;
-  for (std::size_t t = 0; t < 4; ++t) {
-    const bool is_right = t % 2 != 0, is_low = t / 2 != 0;
-    const int x = static_cast<int>(left) + is_right, y = static_cast<int>(top) + is_low;
-    const bool is_inside = extent.contains(x, y);
-    taps.x[t] = is_inside ? x : 0;
-    taps.y[t] = is_inside ? y : 0;
-    const float bilinear = (is_right ? fx : 1.0f - fx) * (is_low ? fy : 1.0f - fy);
-    taps.weight[t] = is_inside ? bilinear * guide_weight(guide, there(x, y), steps) : 0.0f;
-    taps.total += taps.weight[t];
-  }
-  return taps.total >= kLeastMatch;
-}
-
-// Goes on by the links of the pixels around a place. False where half of them are not known.
-bool follow_link(const FrameLink& link, const Taps& taps, Place& place) {
-  Link sum{};
-  for (std::size_t t = 0; t < 4; ++t) {
-    const Link& from = link(taps.x[t], taps.y[t]);
-    sum.x += taps.weight[t] * from.x;
-    sum.y += taps.weight[t] * from.y;
-    sum.log_depth += taps.weight[t] * from.log_depth;
-    sum.known += taps.weight[t] * from.known;
-  }
-  if (sum.known < 0.5f * taps.total) return false;
-  const float over = 1.0f / sum.known;
-  place = {place.x + sum.x * over, place.y + sum.y * over, place.log_depth + sum.log_depth * over};
-  return true;
-}
-
-// What another frame says of one pixel's light.
+// What a frame's pilots say of a pixel. match: 0 where the frame says nothing.
 struct Candidate {
-  RecordedLight light;
-  float match, gain, trust;  // trust: weight by the change of light on the way
+  float pilot, pilot_variance, noise, match;
 };
 
-struct Candidates {
-  std::array<Candidate, 2 * kMostGathered> list;
-  std::size_t count = 0;
-};
-
-void add_candidate(const LightRecord& record, const Taps& taps, float gain, float trust,
-                   Candidates& out) {
-  RecordedLight sum{};
-  for (std::size_t t = 0; t < 4; ++t) {
-    const RecordedLight& from = record(taps.x[t], taps.y[t]);
-    const float w = taps.weight[t];
-    sum.r += w * from.r;
-    sum.g += w * from.g;
-    sum.b += w * from.b;
-    sum.pilot += w * from.pilot;
-    sum.pilot_variance += w * from.pilot_variance;
-    sum.noise += w * from.noise;
-    sum.usable += w * from.usable;
-  }
-  if (sum.usable < 0.5f * taps.total || out.count == out.list.size()) return;
-  const float match = std::min(sum.usable, 1.0f), over = 1.0f / sum.usable;
-  for (float* value : {&sum.r, &sum.g, &sum.b, &sum.pilot, &sum.pilot_variance, &sum.noise}) {
-    *value *= over;
-  }
-  out.list[out.count++] = {sum, match, gain, trust};
+Candidate find_candidate(const LightRecord& record, const FrameTaps& taps) {
+  Candidate sum{};
+  if (taps.total == 0.0f) return sum;
+  each_tap(taps, [&](int x, int y, float weight) {
+    const RecordedLight& from = record(x, y);
+    sum.pilot += weight * from.pilot;
+    sum.pilot_variance += weight * from.pilot_variance;
+    sum.noise += weight * from.noise;
+    sum.match += weight * from.usable;
+  });
+  if (sum.match < 0.5f * taps.total) return {};
+  const float over = 1.0f / sum.match;
+  return {sum.pilot * over, sum.pilot_variance * over, sum.noise * over, std::min(sum.match, 1.0f)};
 }
 
-// The noise of light and pilots over all frames.
-struct MeanNoise {
-  float light = 0.0f, pilot = 0.0f;
+// Terms of a test, and the weight of their window that is known.
+struct Terms {
+  float square, variance, known;
 };
 
-MeanNoise mean_noise(const RecordedLight& own, const Candidates& found) {
-  float total = own.usable;
-  MeanNoise noise{own.usable * own.noise, own.usable * own.pilot_variance};
-  for (std::size_t i = 0; i < found.count; ++i) {
-    const Candidate& other = found.list[i];
-    total += other.match;
-    noise.light += other.match * other.light.noise;
-    noise.pilot += other.match * other.light.pilot_variance;
-  }
-  const float over = total > 0.0f ? 1.0f / total : 0.0f;
-  return {noise.light * over, noise.pilot * over};
+Terms terms_of(const RecordedLight& own, const Candidate& other, float tolerance) {
+  if (own.usable == 0.0f || other.match == 0.0f) return {};
+  const float d = other.pilot - own.pilot;
+  const float drift = tolerance * std::max(std::abs(other.pilot), std::abs(own.pilot));
+  return {d * d, other.pilot_variance + own.pilot_variance + drift * drift, 1.0f};
 }
 
-class Gatherer {
+// Sums of the light of a pixel, and of weights and their squares.
+struct LightSum {
+  float r, g, b, total, squares, noise, pilots;
+};
+
+// One tile and the frames around it.
+class TileGather {
  public:
-  Gatherer(const Plane<PackedGuide>& guides, const GuideWidths& widths,
-           std::span<const GatherWalk> walks, std::span<const GatherLayer> layers,
-           const GatherOptions& options)
-      : guides_(guides), widths_(widths), walks_(walks), layers_(layers), options_(options) {}
+  TileGather(const Plane<PackedGuide>& guides, const GuideWidths& widths,
+             std::span<const GatherWalk> walks, const GatherOptions& options, const Rect& tile)
+      : guides_(guides), options_(options), tile_(tile) {
+    const Extent extent = guides.extent();
+    area_ = {std::max(tile.x0 - kAround, 0), std::max(tile.y0 - kAround, 0),
+             std::min(tile.x1 + kAround, extent.width), std::min(tile.y1 + kAround, extent.height)};
+    places_.find(area_, guides, widths, walks);
+  }
 
-  void row(int y) const {
-    std::vector<Candidates> found(layers_.size());
-    for (int x = 0; x < guides_.width(); ++x) {
-      if (!shows_surface(guides_(x, y))) continue;
-      for (Candidates& layer : found) layer.count = 0;
-      for (const GatherWalk& walk : walks_) follow(walk, x, y, found);
-      for (std::size_t i = 0; i < layers_.size(); ++i) merge(layers_[i], x, y, found[i]);
+  void light(const GatherLayer& layer, std::size_t index) {
+    find_candidates(index);
+    start(layer);
+    for (std::size_t f = 0; f < places_.frames(); ++f) {
+      find_windows(layer, f);
+      add_light(*places_.step(f).lights[index], f);
+    }
+    finish(layer);
+  }
+
+  void color(const GatherColor& color, std::size_t index) const {
+    for (int y = tile_.y0; y < tile_.y1; ++y) {
+      for (int x = tile_.x0; x < tile_.x1; ++x) steady(color, index, x, y);
     }
   }
 
  private:
-  // The light of all layers along a walk.
-  void follow(const GatherWalk& walk, int x, int y, std::vector<Candidates>& found) const {
-    if (walk.empty()) return;
-    const Link& first = (*walk.front().link)(x, y);
-    if (first.known == 0.0f) return;
-    Place before{static_cast<float>(x), static_cast<float>(y), 0.0f};
-    Place place{before.x + first.x, before.y + first.y, first.log_depth};
-    std::array<float, kMaxLights> gain, change{};
-    gain.fill(1.0f);
-    Taps taps;
-    for (std::size_t s = 0; s < walk.size(); ++s) {
-      const GatherStep& step = walk[s];
-      if (s > 0) {
-        before = place;
-        if (!follow_link(*step.link, taps, place)) return;
+  [[nodiscard]] std::size_t at(int x, int y) const {
+    return static_cast<std::size_t>((y - area_.y0) * area_.width() + x - area_.x0);
+  }
+  [[nodiscard]] const Candidate& candidate(std::size_t frame, std::size_t pixel) const {
+    return candidates_[frame * static_cast<std::size_t>(area_.pixels()) + pixel];
+  }
+  template <typename Visit>
+  void each_pixel(const Visit& visit) const {
+    std::size_t i = 0;
+    for (int y = tile_.y0; y < tile_.y1; ++y) {
+      for (int x = tile_.x0; x < tile_.x1; ++x) visit(x, y, i++);
+    }
+  }
+
+  void find_candidates(std::size_t index) {
+    candidates_.clear();
+    for (std::size_t f = 0; f < places_.frames(); ++f) {
+      const LightRecord& record = *places_.step(f).lights[index];
+      for (const FrameTaps& taps : places_.taps(f)) {
+        candidates_.push_back(find_candidate(record, taps));
       }
-      if (!find_taps(*step.guides, guides_(x, y), place, widths_, taps)) return;
-      for (std::size_t i = 0; i < layers_.size(); ++i) {
-        if (step.changes[i]) {
-          gain[i] *= step.changes[i]->at(before.x, before.y);
-          change[i] = std::max(change[i], std::abs(std::log(gain[i])) / options_.change);
+    }
+  }
+
+  // The frame's own light, and means over all frames.
+  void start(const GatherLayer& layer) {
+    sums_.assign(static_cast<std::size_t>(tile_.pixels()), LightSum{});
+    each_pixel([&](int x, int y, std::size_t i) {
+      const RecordedLight& own = (*layer.own)(x, y);
+      LightSum& sum = sums_[i];
+      sum = {own.r, own.g, own.b, own.usable, own.usable, own.usable * own.noise, 0.0f};
+      float matches = 0.0f;
+      for (std::size_t f = 0; f < places_.frames(); ++f) {
+        const Candidate& other = candidate(f, at(x, y));
+        sum.noise += other.match * other.noise;
+        sum.pilots += other.match * (other.pilot_variance + own.pilot_variance);
+        matches += other.match;
+      }
+      sum.noise /= std::max(own.usable + matches, kTiny);
+      sum.pilots /= std::max(matches, kTiny);
+    });
+  }
+
+  // Sums of the terms of a test over windows, row by row and then column by column.
+  void find_windows(const GatherLayer& layer, std::size_t frame) {
+    const int width = area_.width();
+    terms_.resize(static_cast<std::size_t>(area_.pixels()));
+    rows_.assign(terms_.size(), Terms{});
+    for (int y = area_.y0; y < area_.y1; ++y) {
+      for (int x = area_.x0; x < area_.x1; ++x) {
+        terms_[at(x, y)] =
+            terms_of((*layer.own)(x, y), candidate(frame, at(x, y)), layer.tolerance);
+      }
+      const Terms* row = &terms_[at(area_.x0, y)];
+      for (int x = tile_.x0 - area_.x0; x < tile_.x1 - area_.x0; ++x) {
+        Terms& sum = rows_[at(area_.x0, y) + static_cast<std::size_t>(x)];
+        for (int d = -kAround; d <= kAround; ++d) {
+          if (x + d >= 0 && x + d < width) add(row[x + d], d, sum);
         }
-        if (!step.lights[i]) continue;
-        add_candidate(*step.lights[i], taps, gain[i], 1.0f / (1.0f + change[i] * change[i]),
-                      found[i]);
       }
     }
+    windows_.assign(sums_.size(), Terms{});
+    each_pixel([&](int x, int y, std::size_t i) {
+      for (int d = -kAround; d <= kAround; ++d) {
+        if (y + d >= area_.y0 && y + d < area_.y1) add(rows_[at(x, y + d)], d, windows_[i]);
+      }
+    });
   }
 
-  [[nodiscard]] float weight(const GatherLayer& layer, const RecordedLight& own,
-                             const Candidate& other, const MeanNoise& noise) const {
-    if (layer.count || own.usable == 0.0f) return other.match * other.trust;
-    const float d = other.light.pilot - own.pilot;
-    const float ratio = d * d / (2.0f * noise.pilot + kTiny);
-    return other.match * falloff(options_.slope * std::max(0.0f, ratio - options_.soft));
+  static void add(const Terms& term, int distance, Terms& sum) {
+    const float k = kTent[static_cast<std::size_t>(distance + kAround)];
+    sum.square += k * term.square;
+    sum.variance += k * term.variance;
+    sum.known += k * term.known;
   }
 
-  void merge(const GatherLayer& layer, int x, int y, const Candidates& found) const {
-    const RecordedLight& own = (*layer.own)(x, y);
-    const MeanNoise noise = mean_noise(own, found);
-    Planes<3>& light = *layer.light;
-    float r = light[0](x, y), g = light[1](x, y), b = light[2](x, y);
-    float& variance = (*layer.variance)(x, y);
-    float total = layer.count ? std::max((*layer.count)(x, y), 1.0f) : 1.0f;
-    float spread = total * total * (layer.count ? variance : noise.light);
-    if (!std::isfinite(r + g + b + spread)) r = g = b = total = spread = 0.0f;
-    r *= total, g *= total, b *= total;
-    for (std::size_t i = 0; i < found.count; ++i) {
-      const Candidate& other = found.list[i];
-      const float w = weight(layer, own, other, noise), scaled = w * other.gain;
-      r += scaled * other.light.r;
-      g += scaled * other.light.g;
-      b += scaled * other.light.b;
+  // How well a frame says the same as the frame at hand.
+  [[nodiscard]] float test(const Terms& window, float pilots) const {
+    if (window.known == 0.0f) return 1.0f;
+    const float variance = 0.5f * (window.variance + window.known * pilots);
+    const float ratio = window.square / (variance + kTiny);
+    return falloff(options_.slope * std::max(0.0f, ratio - options_.soft));
+  }
+
+  void add_light(const LightRecord& record, std::size_t frame) {
+    const std::span<const FrameTaps> all = places_.taps(frame);
+    each_pixel([&](int x, int y, std::size_t i) {
+      const Candidate& other = candidate(frame, at(x, y));
+      if (other.match == 0.0f) return;
+      LightSum& sum = sums_[i];
+      const float w = other.match * test(windows_[i], sum.pilots);
+      if (w == 0.0f) return;
+      float r = 0.0f, g = 0.0f, b = 0.0f, usable = 0.0f;
+      each_tap(all[at(x, y)], [&](int tx, int ty, float weight) {
+        const RecordedLight& from = record(tx, ty);
+        r += weight * from.r, g += weight * from.g, b += weight * from.b;
+        usable += weight * from.usable;
+      });
+      const float over = w / usable;
+      sum.r += over * r, sum.g += over * g, sum.b += over * b;
+      sum.total += w, sum.squares += w * w;
+    });
+  }
+
+  void finish(const GatherLayer& layer) const {
+    each_pixel([&](int x, int y, std::size_t i) {
+      const LightSum& sum = sums_[i];
+      const float over = sum.total > 0.0f ? 1.0f / sum.total : kNone;
+      Planes<3>& light = *layer.light;
+      light[0](x, y) = sum.r * over;
+      light[1](x, y) = sum.g * over;
+      light[2](x, y) = sum.b * over;
+      (*layer.variance)(x, y) = sum.total > 0.0f ? sum.noise * sum.squares * over * over : 0.0f;
+    });
+  }
+
+  void steady(const GatherColor& color, std::size_t index, int x, int y) const {
+    const PackedColor& own = (*color.own)(x, y);
+    if (own.usable == 0 || !shows_surface(guides_(x, y))) return;
+    std::array<float, 3> sum{static_cast<float>(own.r), static_cast<float>(own.g),
+                             static_cast<float>(own.b)};
+    float total = 1.0f;
+    for (std::size_t f = 0; f < places_.frames(); ++f) {
+      const FrameTaps& taps = places_.taps(f)[at(x, y)];
+      if (taps.total == 0.0f) continue;
+      const ColorRecord& record = *places_.step(f).colors[index];
+      float r = 0.0f, g = 0.0f, b = 0.0f, usable = 0.0f, squares = 0.0f;
+      each_tap(taps, [&](int tx, int ty, float weight) {
+        const PackedColor& from = record(tx, ty);
+        const float w = from.usable != 0 ? weight : 0.0f;
+        r += w * static_cast<float>(from.r);
+        g += w * static_cast<float>(from.g);
+        b += w * static_cast<float>(from.b);
+        usable += w;
+        squares += w * w;
+      });
+      if (usable < 0.5f * taps.total) continue;
+      const float over = 1.0f / usable;
+      r *= over, g *= over, b *= over;
+      const float dr = r - static_cast<float>(own.r), dg = g - static_cast<float>(own.g),
+                  db = b - static_cast<float>(own.b);
+      const float width = options_.color / kColorStep;
+      const float w = std::min(usable, 1.0f) * squares * over * over *
+                      falloff((dr * dr + dg * dg + db * db) / (width * width));
+      sum[0] += w * r, sum[1] += w * g, sum[2] += w * b;
       total += w;
-      spread += scaled * scaled * noise.light;
     }
-    if (total <= 0.0f) return;
-    const float over = 1.0f / total;
-    light[0](x, y) = r * over, light[1](x, y) = g * over, light[2](x, y) = b * over;
-    variance = spread * over * over;
+    for (std::size_t c = 0; c < 3; ++c) (*color.color)[c](x, y) = sum[c] * kColorStep / total;
   }
 
   const Plane<PackedGuide>& guides_;
-  const GuideWidths& widths_;
-  std::span<const GatherWalk> walks_;
-  std::span<const GatherLayer> layers_;
   const GatherOptions& options_;
+  Rect tile_, area_;
+  FramePlaces places_;
+  std::vector<Candidate> candidates_;
+  std::vector<LightSum> sums_;
+  std::vector<Terms> terms_, rows_, windows_;
 };
 
 }  // namespace
@@ -206,14 +248,18 @@ class Gatherer {
 void GatherOptions::validate() const {
   EL_CHECK(soft >= 0.0f && soft <= 100.0f, "soft {}: expected [0, 100]", soft);
   EL_CHECK(slope >= 0.0f && slope <= 100.0f, "slope {}: expected [0, 100]", slope);
-  EL_CHECK(change > 0.0f && change <= 10.0f, "change {}: expected (0, 10]", change);
+  EL_CHECK(color > 0.0f && color <= 10.0f, "color {}: expected (0, 10]", color);
 }
 
 void gather(const Plane<PackedGuide>& guides, const GuideWidths& widths,
             std::span<const GatherWalk> walks, std::span<const GatherLayer> layers,
-            const GatherOptions& options) {
-  const Gatherer gatherer(guides, widths, walks, layers, options);
-  parallel_for(guides.height(), [&](int y) { gatherer.row(y); });
+            std::span<const GatherColor> colors, const GatherOptions& options) {
+  const TileGrid grid(guides.extent(), kTile, kTile);
+  parallel_for(grid.count(), [&](int index) {
+    TileGather tile(guides, widths, walks, options, grid.tile(index));
+    for (std::size_t i = 0; i < layers.size(); ++i) tile.light(layers[i], i);
+    for (std::size_t i = 0; i < colors.size(); ++i) tile.color(colors[i], i);
+  });
 }
 
 }  // namespace eigenlight

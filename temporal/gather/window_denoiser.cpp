@@ -1,46 +1,33 @@
 #include "temporal/gather/window_denoiser.h"
 
-#include <limits>
+#include <cmath>
 
 #include "frame/check.h"
-#include "frame/memory_source.h"
+#include "frame/tiles.h"
+#include "temporal/gather/even_light.h"
 #include "temporal/stage_clock.h"
 
 namespace eigenlight {
 namespace {
 
-constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
-
-DenoiserOptions with_one_basis(DenoiserOptions options) {
-  options.bases = 1;
-  return options;
-}
+// Ratios to smaller colors say nothing: 8-bit textures cannot tell these apart.
+constexpr float kLeastColor = 0.01f;
 
 const WindowOptions& checked(const WindowOptions& options) {
   options.validate();
   return options;
 }
 
-// A value that was used before, or a new one.
-template <typename T>
-T take(std::vector<T>& spare) {
-  if (spare.empty()) return {};
-  T value = std::move(spare.back());
-  spare.pop_back();
-  return value;
+void validate_tuning(const LightTuning& tuning) {
+  EL_CHECK(tuning.tolerance >= 0.0f && tuning.tolerance <= 1.0f, "tolerance {}: expected [0, 1]",
+           tuning.tolerance);
+  EL_CHECK(tuning.sigmas > 0.0f && tuning.sigmas <= 100.0f, "sigmas {}: expected (0, 100]",
+           tuning.sigmas);
 }
 
 }  // namespace
 
 WindowOptions::WindowOptions() {
-  eigen.even_gain = true;
-  eigen.filter = false;
-  eigen.look_back = false;
-  eigen.young_age = 0.0f;
-  // As good as no bound: what it takes from outliers is missing in the picture, and means over 3 x
-  // 3 pixels let the filter spread them.
-  eigen.fireflies.deviations = 1000.0f;
-  eigen.fireflies.times = 1000.0f;
   pilot.radius = 1;
   filter.passes = 5;
 }
@@ -51,102 +38,103 @@ void WindowOptions::validate() const {
   EL_CHECK(past >= 0 && past <= kMostGathered, "past {}: expected 0 to {}", past, kMostGathered);
   guides.validate();
   gather.validate();
-  for (const float value : {sigmas, direct_sigmas, pilot_sigmas}) {
-    EL_CHECK(value > 0.0f && value <= 100.0f, "sigmas {}: expected (0, 100]", value);
+  for (const LightTuning& tuning : {direct, diffuse, glossy}) validate_tuning(tuning);
+  EL_CHECK(pilot_sigmas > 0.0f && pilot_sigmas <= 100.0f, "pilot_sigmas {}: expected (0, 100]",
+           pilot_sigmas);
+}
+
+WindowDenoiser::WindowDenoiser(Extent extent, int layers, const WindowOptions& options)
+    : options_(checked(options)),
+      extent_(extent),
+      recorder_(extent, layers, options.pilot, options.pilot_sigmas),
+      filter_(extent, options.filter) {
+  EL_CHECK(layers >= 1 && layers <= kMaxLights, "{} layers of light, expected 1 to {}", layers,
+           kMaxLights);
+  for (int i = 0; i < layers; ++i) {
+    outputs_.push_back(make_planes<3>(extent));
+    variances_.emplace_back(extent);
   }
 }
 
-WindowDenoiser::WindowDenoiser(const DenoiserOptions& options, const WindowOptions& tuning)
-    : options_(checked(tuning)),
-      eigen_(with_one_basis(options), tuning.eigen),
-      recorder_(options.extent, options.layers, tuning.pilot, tuning.pilot_sigmas),
-      filter_(options.extent, tuning.filter) {
-  for (int i = 0; i < options.layers; ++i) {
-    outputs_.push_back(make_planes<3>(options.extent));
-    variances_.emplace_back(options.extent);
-  }
+const LightTuning& WindowDenoiser::tuning_of(const NoisyLight& light) const {
+  if (light.is_direct) return options_.direct;
+  return light.is_glossy ? options_.glossy : options_.diffuse;
 }
 
-WindowDenoiser::Record& WindowDenoiser::add_record(const Frame& frame) {
+// Layers whose colors are the same memory share a record.
+void WindowDenoiser::record_colors(const FrameInput& frame, Record& record) {
+  std::vector<const float*> known;
+  record.color_of.assign(frame.lights.size(), -1);
+  for (std::size_t i = 0; i < frame.lights.size(); ++i) {
+    const Planes<3>& color = frame.lights[i].color;
+    if (color[0].empty()) continue;
+    const float* memory = color[0].row(extent_.height / 2);
+    const auto found = std::find(known.begin(), known.end(), memory);
+    record.color_of[i] = static_cast<int>(found - known.begin());
+    if (found != known.end()) continue;
+    known.push_back(memory);
+    if (record.colors.size() < known.size()) record.colors.emplace_back();
+    record_color(color, record.colors[known.size() - 1]);
+  }
+  record.colors.resize(known.size());
+}
+
+void WindowDenoiser::count(const FrameInput& frame, Record& record) const {
+  FrameReport& report = record.report;
+  report = {};
+  report.frame = frame.index;
+  const bool has_before =
+      records_.size() > 1 && records_[records_.size() - 2].index == record.previous_index;
+  report.cut = !has_before;
+  for (int y = 0; y < extent_.height; ++y) {
+    for (int x = 0; x < extent_.width; ++x) {
+      if (!shows_surface(record.guides(x, y))) continue;
+      ++report.surface_pixels;
+      bool is_usable = true;
+      for (const LightRecord& light : record.lights) is_usable &= light(x, y).usable != 0.0f;
+      report.non_finite_pixels += is_usable ? 0 : 1;
+    }
+  }
+  report.new_pixels = has_before
+                          ? count_new(record.back, record.guides,
+                                      records_[records_.size() - 2].guides, options_.guides)
+                          : report.surface_pixels;
+}
+
+WindowDenoiser::Record& WindowDenoiser::add_record(const FrameInput& frame) {
   EL_CHECK(frame.lights.size() == outputs_.size(), "frame {}: {} layers of light, expected {}",
            frame.index, frame.lights.size(), outputs_.size());
-  EL_CHECK(frame.extent() == outputs_.front()[0].extent(), "frame {}: its size differs",
-           frame.index);
-  Record& record = records_.emplace_back(take(spare_));
+  EL_CHECK(frame.extent() == extent_, "frame {}: its size differs", frame.index);
+  StageClock clock;
+  records_.emplace_back();
+  Record& record = records_.back();
+  if (!spare_.empty()) {
+    record = std::move(spare_.back());
+    spare_.pop_back();
+  }
   record.index = frame.index;
   record.previous_index = frame.previous_index;
-  record.is_direct.clear();
-  for (const NoisyLight& light : frame.lights) record.is_direct.push_back(light.is_direct);
-  for (std::size_t i = 0; i < outputs_.size(); ++i) record.lights.push_back(take(spare_lights_));
+  record.tuning.clear();
+  for (const NoisyLight& light : frame.lights) record.tuning.push_back(tuning_of(light));
+  record.lights.resize(frame.lights.size());
   pack_guides(frame, options_.guides, record.guides);
   link_back(frame, record.back);
   recorder_.record(frame, record.guides, record.lights);
+  record_colors(frame, record);
+  count(frame, record);
+  if (!record.report.cut && records_.size() - next_ >= 2) {
+    Record& before = records_[records_.size() - 2];
+    link_ahead_.find(record.back, record.guides, before.guides, options_.guides, before.ahead);
+  }
+  record.report[Stage::kWarp] += clock.lap();
   return record;
 }
 
-void WindowDenoiser::record_estimates(Record& record) {
-  const Extent extent = record.guides.extent();
-  for (std::size_t i = 0; i < outputs_.size(); ++i) {
-    record.estimates.emplace_back();
-    record.variances.emplace_back();
-    record.ages.emplace_back();
-    if (record.is_direct[i]) continue;
-    const int layer = static_cast<int>(i);
-    record.estimates[i] = take(spare_estimates_);
-    record.variances[i] = take(spare_planes_);
-    record.ages[i] = take(spare_planes_);
-    ensure_extent(record.estimates[i], extent);
-    ensure_extent(record.variances[i], extent);
-    ensure_extent(record.ages[i], extent);
-    copy_planes(eigen_.output(layer), record.estimates[i]);
-    record.variances[i].copy_from(eigen_.variance(layer));
-    record.ages[i].copy_from(eigen_.age(layer));
-  }
-}
+void WindowDenoiser::push(const FrameInput& frame) { add_record(frame); }
 
-// Later frames gather direct light alone from it.
-void WindowDenoiser::release(Record& record) {
-  for (std::size_t i = 0; i < record.estimates.size(); ++i) {
-    if (record.is_direct[i]) continue;
-    spare_estimates_.push_back(std::move(record.estimates[i]));
-    spare_planes_.push_back(std::move(record.variances[i]));
-    spare_planes_.push_back(std::move(record.ages[i]));
-    spare_lights_.push_back(std::move(record.lights[i]));
-  }
-  record.estimates.clear();
-  record.variances.clear();
-  record.ages.clear();
-}
-
-void WindowDenoiser::link_to(Record& before, const Record& record) {
-  link_ahead_.find(record.back, record.guides, before.guides, options_.guides, before.ahead);
-  before.changes.resize(outputs_.size());
-  for (std::size_t i = 0; i < outputs_.size(); ++i) {
-    if (record.is_direct[i]) continue;
-    before.changes[i].find(before.estimates[i], record.estimates[i], before.ahead);
-  }
-}
-
-void WindowDenoiser::push(Frame& frame) {
-  StageClock clock;
-  Record& record = add_record(frame);
-  const StageTime recorded = clock.lap();
-  OneFrameSource source(frame);
-  if (!eigen_.step(source)) throw std::logic_error("the loop did not take a frame");
-  record.report = eigen_.report();
-  (void)clock.lap();
-  record_estimates(record);
-  if (records_.size() - next_ >= 2) {
-    Record& before = records_[records_.size() - 2];
-    if (record.previous_index == before.index) link_to(before, record);
-  }
-  record.report[Stage::kFilter] += recorded;
-  record.report[Stage::kFilter] += clock.lap();
-}
-
-void WindowDenoiser::push_past(const Frame& frame) {
+void WindowDenoiser::push_past(const FrameInput& frame) {
   EL_CHECK(next_ == records_.size(), "frame {}: frames to be denoised wait already", frame.index);
-  release(add_record(frame));
+  add_record(frame);
   ++next_;
   drop_used();
 }
@@ -155,6 +143,7 @@ void WindowDenoiser::push_past(const Frame& frame) {
 GatherWalk WindowDenoiser::walk(int direction, int frames) const {
   GatherWalk steps;
   const bool is_ahead = direction > 0;
+  const std::size_t colors = records_[next_].colors.size();
   for (std::size_t at = next_; static_cast<int>(steps.size()) < frames;) {
     if (is_ahead ? at + 1 == records_.size() : at == 0) break;
     const Record& here = records_[at];
@@ -162,36 +151,47 @@ GatherWalk WindowDenoiser::walk(int direction, int frames) const {
     const Record& there = records_[at];
     const bool is_linked =
         is_ahead ? there.previous_index == here.index : here.previous_index == there.index;
-    if (!is_linked) break;
+    if (!is_linked || there.colors.size() != colors) break;
     GatherStep& step = steps.emplace_back();
     step.link = is_ahead ? &here.ahead : &here.back;
     step.guides = &there.guides;
-    for (std::size_t i = 0; i < outputs_.size(); ++i) {
-      const bool is_direct = there.is_direct[i];
-      step.lights.push_back(is_ahead || is_direct ? &there.lights[i] : nullptr);
-      step.changes.push_back(is_ahead && !is_direct ? &here.changes[i] : nullptr);
-    }
+    for (const LightRecord& light : there.lights) step.lights.push_back(&light);
+    for (const ColorRecord& color : there.colors) step.colors.push_back(&color);
   }
   return steps;
 }
 
-// Direct light starts with the frame's own.
-void WindowDenoiser::start_output(const Record& record, std::size_t layer) {
-  Planes<3>& output = outputs_[layer];
-  if (!record.is_direct[layer]) {
-    copy_planes(record.estimates[layer], output);
-    variances_[layer].copy_from(record.variances[layer]);
-    return;
+void WindowDenoiser::gather_all(const Record& record) {
+  const std::vector<GatherWalk> walks{walk(-1, options_.past), walk(1, options_.ahead)};
+  std::vector<GatherLayer> layers;
+  for (std::size_t i = 0; i < outputs_.size(); ++i) {
+    layers.push_back(
+        {&record.lights[i], record.tuning[i].tolerance, &outputs_[i], &variances_[i]});
   }
-  const LightRecord& own = record.lights[layer];
-  parallel_for(own.height(), [&](int y) {
-    for (int x = 0; x < own.width(); ++x) {
-      const RecordedLight& from = own(x, y);
-      const bool is_usable = from.usable != 0.0f;
-      output[0](x, y) = is_usable ? from.r : kNone;
-      output[1](x, y) = is_usable ? from.g : kNone;
-      output[2](x, y) = is_usable ? from.b : kNone;
-      variances_[layer](x, y) = from.noise;
+  std::vector<GatherColor> colors;
+  while (colors_.size() < record.colors.size()) colors_.push_back(make_planes<3>(extent_));
+  for (std::size_t i = 0; i < record.colors.size(); ++i) {
+    colors.push_back({&record.colors[i], &colors_[i]});
+  }
+  gather(record.guides, options_.guides, walks, layers, colors, options_.gather);
+}
+
+// Multiplies light by the steadied color over the frame's own.
+void WindowDenoiser::apply_colors(const Record& record, std::size_t layer) {
+  if (record.color_of[layer] < 0) return;
+  const auto index = static_cast<std::size_t>(record.color_of[layer]);
+  const ColorRecord& own = record.colors[index];
+  const Planes<3>& steady = colors_[index];
+  Planes<3>& light = outputs_[layer];
+  parallel_for(extent_.height, [&](int y) {
+    for (int x = 0; x < extent_.width; ++x) {
+      const PackedColor& from = own(x, y);
+      if (from.usable == 0 || !shows_surface(record.guides(x, y))) continue;
+      const std::uint16_t channels[3] = {from.r, from.g, from.b};
+      for (std::size_t c = 0; c < 3; ++c) {
+        const float color = static_cast<float>(channels[c]) * kColorStep;
+        if (color >= kLeastColor) light[c](x, y) *= steady[c](x, y) / color;
+      }
     }
   });
 }
@@ -202,21 +202,20 @@ bool WindowDenoiser::step() {
   if (!is_finished_ && records_.size() <= next_ + ahead) return false;
   StageClock clock;
   Record& record = records_[next_];
-  const std::vector<GatherWalk> walks{walk(-1, options_.past), walk(1, options_.ahead)};
-  std::vector<GatherLayer> gathered;
+  gather_all(record);
+  record.report[Stage::kProject] += clock.lap();
   std::vector<SoftLayer> filtered;
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
-    start_output(record, i);
-    gathered.push_back({&record.lights[i], &outputs_[i], &variances_[i],
-                        record.is_direct[i] ? nullptr : &record.ages[i]});
-    filtered.push_back({&outputs_[i], &variances_[i],
-                        record.is_direct[i] ? options_.direct_sigmas : options_.sigmas});
+    filtered.push_back({&outputs_[i], &variances_[i], record.tuning[i].sigmas});
   }
-  gather(record.guides, options_.guides, walks, gathered, options_.gather);
   filter_.process(record.guides, filtered);
+  record.report[Stage::kFilter] += clock.lap();
+  for (std::size_t i = 0; i < outputs_.size(); ++i) {
+    even_light(record.lights[i], outputs_[i]);
+    apply_colors(record, i);
+  }
+  record.report[Stage::kCorrect] += clock.lap();
   report_ = record.report;
-  report_[Stage::kFilter] += clock.lap();
-  release(record);
   ++next_;
   drop_used();
   return true;
@@ -224,12 +223,7 @@ bool WindowDenoiser::step() {
 
 void WindowDenoiser::drop_used() {
   while (next_ > static_cast<std::size_t>(options_.past)) {
-    Record& oldest = records_.front();
-    for (LightRecord& light : oldest.lights) {
-      if (!light.empty()) spare_lights_.push_back(std::move(light));
-    }
-    oldest.lights.clear();
-    spare_.push_back(std::move(oldest));
+    spare_.push_back(std::move(records_.front()));
     records_.pop_front();
     --next_;
   }

@@ -3,51 +3,57 @@
 
 #include <deque>
 
-#include "temporal/eigen/eigen_denoiser.h"
+#include "temporal/frame_report.h"
 #include "temporal/gather/gather.h"
 
 namespace eigenlight {
 
+/// How a kind of light is gathered and filtered.
+struct LightTuning {
+  float tolerance;  ///< GatherLayer::tolerance
+  float sigmas;     ///< SoftLayer::sigmas
+};
+
 struct WindowOptions {
-  /// [0, 64] Later frames that may help a frame, and earlier ones that its direct light is gathered
-  /// from: 3 and 6 gave the same errors on two Cycles shots, 12 more.
-  int ahead = 8, past = 4;
-  EigenOptions eigen;  ///< its own filters are turned off
+  /// [0, 64] Later frames that may help a frame, and earlier ones.
+  int ahead = 8, past = 8;
   SoftAtrousOptions pilot, filter;
   GuideWidths guides;
   GatherOptions gather;
-  /// (0, 100] Standard deviations that count as the same light in the filter: of estimates over
-  /// many frames, of direct light, and of pilots. Noise is skewed: light that a sample finds with a
+  /// Shadows move and are sharp: little may change between frames, and the filter is narrow.
+  LightTuning direct = {.tolerance = 0.05f, .sigmas = 2.5f};
+  /// What other surfaces reflect is smooth and has most noise: light that a sample finds with a
   /// chance p is 1 / sqrt(p) deviations off.
-  float sigmas = 7.0f, direct_sigmas = 5.0f, pilot_sigmas = 3.0f;
+  LightTuning diffuse = {.tolerance = 0.2f, .sigmas = 9.0f};
+  /// Reflections are as sharp as the mirror, and move otherwise than its surface.
+  LightTuning glossy = {.tolerance = 0.05f, .sigmas = 4.0f};
+  float pilot_sigmas = 4.0f;  ///< (0, 100] standard deviations that count as the same light
 
   WindowOptions();
   void validate() const;  ///< throws std::invalid_argument naming the field
 };
 
-/// Denoises frames whose guides are as noisy as their light, each with `ahead` later ones.
+/// Denoises frames whose guides are as noisy as their light, each with `past` earlier and `ahead`
+/// later ones.
 ///
-/// push() takes a frame in: EigenDenoiser makes its estimate, with one basis whose gain is a ratio
-/// of sums of light (even_sums.h) and without a bound of fireflies, both of which cost light where
-/// samples are few and heavy-tailed. step() brings the light of other frames to the oldest frame
-/// that waits (gather.h), and filters it (soft_atrous.h).
+/// push() takes a frame in and filters its pilots. step() brings light and colors of other frames
+/// to the oldest frame that waits (gather.h), filters the light (soft_atrous.h), gives back what
+/// that lost (even_light.h), and multiplies it by the steadied color over the frame's own: so the
+/// product of output and the frame's color has no noise of colors.
 ///
-/// Direct light has no estimate: its edges move over surfaces and are in no guide, and a history
-/// would drag them along. It is gathered from earlier frames as well. Other light is gathered from
-/// later frames, its estimate holds the earlier ones.
-///
-/// A frame's output depends on the frames up to `ahead` after it, and on no other later one.
+/// There is no recursive history: a frame's output depends on the frames of its window and on no
+/// other, and nothing old stays. Tests of pilots replace a model of how light changes.
 class WindowDenoiser {
  public:
-  /// Takes size and number of layers of `options`. Throws std::invalid_argument on bad ones.
-  explicit WindowDenoiser(const DenoiserOptions& options, const WindowOptions& tuning = {});
+  /// Throws std::invalid_argument on bad options, a bad size, or layers outside [1, kMaxLights].
+  WindowDenoiser(Extent extent, int layers, const WindowOptions& options = {});
 
-  /// Takes the next frame in, and leaves an older frame's planes in its place. Throws
-  /// std::invalid_argument on a frame of another size or number of layers.
-  void push(Frame& frame);
-  /// Takes in a frame before the first one to be denoised, as push() would have left it: for a run
-  /// that goes on after load(), with the last `past` frames.
-  void push_past(const Frame& frame);
+  /// Takes the next frame in. Throws std::invalid_argument on a frame of another size or number of
+  /// layers.
+  void push(const FrameInput& frame);
+  /// Takes in a frame before the first one to be denoised: a run that goes on begins with the last
+  /// `past` frames.
+  void push_past(const FrameInput& frame);
   /// No more frames follow.
   void finish() { is_finished_ = true; }
   /// Denoises the oldest frame that waits. False where it waits for later ones, or there is none.
@@ -58,52 +64,42 @@ class WindowDenoiser {
   [[nodiscard]] const Planes<3>& output(int layer) const {
     return outputs_[static_cast<std::size_t>(layer)];
   }
-  /// Of the frame that step() denoised; the filter's time is that of all that EigenDenoiser does
-  /// not do.
+  /// Of the frame that step() denoised.
   [[nodiscard]] const FrameReport& report() const { return report_; }
   [[nodiscard]] int past() const { return options_.past; }
-
-  /// The state after the last push(). It holds no frames: those that wait must be pushed again.
-  void save(StateWriter& out) const { eigen_.save(out); }
-  void load(StateReader& in) { eigen_.load(in); }
 
  private:
   struct Record {
     int index = 0, previous_index = -1;
     Plane<PackedGuide> guides;
     FrameLink back, ahead;
-    std::vector<bool> is_direct;
+    std::vector<LightTuning> tuning;  // of each layer
+    std::vector<int> color_of;        // of each layer, index of colors; -1: it has none
     std::vector<LightRecord> lights;
-    // Of layers that are not direct.
-    std::vector<Planes<3>> estimates;
-    std::vector<Plane<float>> variances, ages;
-    std::vector<LightChange> changes;  // to the next frame
+    std::vector<ColorRecord> colors;
     FrameReport report;
   };
 
-  Record& add_record(const Frame& frame);
-  void record_estimates(Record& record);
-  void link_to(Record& before, const Record& record);
+  Record& add_record(const FrameInput& frame);
+  void record_colors(const FrameInput& frame, Record& record);
+  void count(const FrameInput& frame, Record& record) const;
+  [[nodiscard]] const LightTuning& tuning_of(const NoisyLight& light) const;
   [[nodiscard]] GatherWalk walk(int direction, int frames) const;
-  void start_output(const Record& record, std::size_t layer);
-  void release(Record& record);
+  void gather_all(const Record& record);
+  void apply_colors(const Record& record, std::size_t layer);
   void drop_used();
 
   WindowOptions options_;
-  EigenDenoiser eigen_;
+  Extent extent_;
   LightRecorder recorder_;
   SoftAtrous filter_;
   LinkAhead link_ahead_;
   std::deque<Record> records_;
   std::size_t next_ = 0;  // of records_, to be denoised
   bool is_finished_ = false;
-  // Planes that no frame needs any more.
-  std::vector<Record> spare_;
-  std::vector<LightRecord> spare_lights_;
-  std::vector<Planes<3>> spare_estimates_;
-  std::vector<Plane<float>> spare_planes_;
+  std::vector<Record> spare_;  // whose planes can be used again
   FrameReport report_;
-  std::vector<Planes<3>> outputs_;
+  std::vector<Planes<3>> outputs_, colors_;
   std::vector<Plane<float>> variances_;
 };
 

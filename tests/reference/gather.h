@@ -11,7 +11,6 @@
 
 namespace eigenlight::reference {
 
-/// One layer of the frame at hand, and what gather() makes of one pixel of it.
 struct GatherSetting {
   const Plane<PackedGuide>& guides;
   const GuideWidths& widths;
@@ -19,6 +18,7 @@ struct GatherSetting {
   const GatherOptions& options;
 };
 
+/// What gather() makes of one pixel of a layer.
 struct GatherPixel {
   std::array<double, 3> light;
   double variance;
@@ -28,35 +28,57 @@ class SlowGather {
  public:
   explicit SlowGather(const GatherSetting& setting) : in_(setting) {}
 
-  /// `layer` of all walks, whose light is still the estimate.
   [[nodiscard]] GatherPixel pixel(const GatherLayer& layer, std::size_t index, int x, int y) const {
-    GatherPixel out{{value((*layer.light)[0], x, y), value((*layer.light)[1], x, y),
-                     value((*layer.light)[2], x, y)},
-                    value(*layer.variance, x, y)};
-    if (!shows_surface(in_.guides(x, y))) return out;
-    const GatherPixel before = out;
-    std::vector<Found> found;
-    for (const GatherWalk& walk : in_.walks) follow(walk, index, x, y, found);
     const RecordedLight& own = (*layer.own)(x, y);
-    const double noise = mean(own, &RecordedLight::noise, found);
-    const double pilots = mean(own, &RecordedLight::pilot_variance, found);
-    double n = layer.count ? std::max(value(*layer.count, x, y), 1.0) : 1.0;
-    double spread = n * n * (layer.count ? out.variance : noise);
-    if (!std::isfinite(out.light[0] + out.light[1] + out.light[2] + spread)) {
-      out.light = {}, n = 0.0, spread = 0.0;
-    }
-    for (double& c : out.light) c *= n;
+    const double usable = value(own.usable);
+    const std::vector<Found> found = frames_at(index, x, y);
+    double noise = usable * value(own.noise), pilots = 0.0, matches = 0.0;
     for (const Found& frame : found) {
-      const bool is_tested = !layer.count && own.usable != 0.0f;
-      const double w = frame.match * (is_tested ? test(frame, own, pilots) : frame.trust);
-      for (std::size_t c = 0; c < 3; ++c) out.light[c] += w * frame.gain * frame.light[c];
-      spread += std::pow(w * frame.gain, 2.0) * noise;
-      n += w;
+      noise += frame.match * frame.noise;
+      pilots += frame.match * (frame.pilot_variance + value(own.pilot_variance));
+      matches += frame.match;
     }
-    if (n == 0.0) return before;
-    for (double& c : out.light) c /= n;
-    out.variance = spread / (n * n);
+    if (usable + matches > 0.0) noise /= usable + matches;
+    if (matches > 0.0) pilots /= matches;
+    GatherPixel out{{usable * value(own.r), usable * value(own.g), usable * value(own.b)}, 0.0};
+    double total = usable, squares = usable;
+    for (std::size_t f = 0; f < found.size(); ++f) {
+      if (found[f].match == 0.0) continue;
+      const double w = found[f].match * test(layer, index, f, x, y, pilots);
+      for (std::size_t c = 0; c < 3; ++c) out.light[c] += w * found[f].light[c];
+      total += w, squares += w * w;
+    }
+    for (double& c : out.light) c /= total;
+    out.variance = total > 0.0 ? noise * squares / (total * total) : 0.0;
     return out;
+  }
+
+  [[nodiscard]] std::array<double, 3> color(const ColorRecord& own, std::size_t index, int x,
+                                            int y) const {
+    const std::array<double, 3> here = values(own(x, y));
+    std::array<double, 3> sum = here;
+    double total = 1.0;
+    for (const auto& [step, taps] : steps_at(x, y)) {
+      if (taps.empty()) continue;
+      std::array<double, 3> there{};
+      double usable = 0.0, squares = 0.0, far = 0.0;
+      for (const Tap& tap : taps) {
+        const PackedColor& from = (*step->colors[index])(tap.x, tap.y);
+        if (from.usable == 0) continue;
+        for (std::size_t c = 0; c < 3; ++c) there[c] += tap.weight * values(from)[c];
+        usable += tap.weight, squares += tap.weight * tap.weight;
+      }
+      if (usable < 0.5 * total_of(taps)) continue;
+      for (std::size_t c = 0; c < 3; ++c) {
+        there[c] /= usable;
+        far += std::pow((there[c] - here[c]) / value(in_.options.color), 2.0);
+      }
+      const double w = std::min(usable, 1.0) * squares / (usable * usable) * slow_falloff(far);
+      for (std::size_t c = 0; c < 3; ++c) sum[c] += w * there[c];
+      total += w;
+    }
+    for (double& c : sum) c /= total;
+    return sum;
   }
 
  private:
@@ -68,14 +90,23 @@ class SlowGather {
     int x, y;
     double weight;
   };
+  // match: 0 where the frame says nothing.
   struct Found {
     std::array<double, 3> light;
-    double pilot, pilot_variance, noise, match, gain, trust;
+    double pilot, pilot_variance, noise, match;
+  };
+  struct Seen {
+    const GatherStep* step;
+    std::vector<Tap> taps;  // none: the pixel is not seen
   };
 
-  template <typename T>
-  [[nodiscard]] static double value(const Plane<T>& plane, int x, int y) {
-    return static_cast<double>(plane(x, y));
+  [[nodiscard]] static double value(float v) { return static_cast<double>(v); }
+  [[nodiscard]] static std::array<double, 3> values(const PackedColor& color) {
+    const double step = value(kColorStep);
+    return {color.r * step, color.g * step, color.b * step};
+  }
+  [[nodiscard]] static double slow_falloff(double x) {
+    return x < 8.0 ? std::pow(1.0 - x / 8.0, 8.0) : 0.0;
   }
 
   [[nodiscard]] std::vector<Tap> taps(const Plane<PackedGuide>& there, const PackedGuide& guide,
@@ -93,13 +124,13 @@ class SlowGather {
           square += std::pow(guide.normal_color[i] - there(x, y).normal_color[i], 2.0);
         }
         square /= 256.0 * 256.0;
-        found.push_back({x, y, square < 8.0 ? near * std::pow(1.0 - square / 8.0, 8.0) : 0.0});
+        found.push_back({x, y, near * slow_falloff(square)});
       }
     }
     return found;
   }
 
-  [[nodiscard]] static double total(const std::vector<Tap>& taps) {
+  [[nodiscard]] static double total_of(const std::vector<Tap>& taps) {
     double sum = 0.0;
     for (const Tap& tap : taps) sum += tap.weight;
     return sum;
@@ -116,74 +147,83 @@ class SlowGather {
       log_depth += tap.weight * static_cast<double>(to.log_depth);
       known += tap.weight;
     }
-    if (known < 0.5 * total(taps)) return std::nullopt;
+    if (known < 0.5 * total_of(taps)) return std::nullopt;
     return Place{place.x + x / known, place.y + y / known, place.log_depth + log_depth / known};
   }
 
+  // The pixel in all frames of all walks.
+  [[nodiscard]] std::vector<Seen> steps_at(int x, int y) const {
+    std::vector<Seen> seen;
+    for (const GatherWalk& walk : in_.walks) {
+      Place place{static_cast<double>(x), static_cast<double>(y), 0.0};
+      std::vector<Tap> here{{x, y, 1.0}};
+      bool is_seen = shows_surface(in_.guides(x, y));
+      for (const GatherStep& step : walk) {
+        const std::optional<Place> there =
+            is_seen ? next(*step.link, here, place) : std::optional<Place>();
+        is_seen = there.has_value();
+        if (is_seen) {
+          place = *there;
+          here = taps(*step.guides, in_.guides(x, y), place);
+          is_seen = total_of(here) >= value(kLeastMatch);
+        }
+        seen.push_back({&step, is_seen ? here : std::vector<Tap>()});
+      }
+    }
+    return seen;
+  }
+
+  [[nodiscard]] std::vector<Found> frames_at(std::size_t index, int x, int y) const {
+    std::vector<Found> found;
+    for (const Seen& seen : steps_at(x, y)) {
+      found.push_back(light_at(*seen.step->lights[index], seen.taps));
+    }
+    return found;
+  }
+
   // What a frame says of the pixel, if half of what matches can be used.
-  [[nodiscard]] static std::optional<Found> light_at(const LightRecord& record,
-                                                     const std::vector<Tap>& taps) {
+  [[nodiscard]] static Found light_at(const LightRecord& record, const std::vector<Tap>& taps) {
     Found sum{};
+    if (taps.empty()) return sum;
     for (const Tap& tap : taps) {
       const RecordedLight& from = record(tap.x, tap.y);
       if (from.usable == 0.0f) continue;
       const std::array<float, 3> light{from.r, from.g, from.b};
-      for (std::size_t c = 0; c < 3; ++c) {
-        sum.light[c] += tap.weight * static_cast<double>(light[c]);
-      }
-      sum.pilot += tap.weight * static_cast<double>(from.pilot);
-      sum.pilot_variance += tap.weight * static_cast<double>(from.pilot_variance);
-      sum.noise += tap.weight * static_cast<double>(from.noise);
+      for (std::size_t c = 0; c < 3; ++c) sum.light[c] += tap.weight * value(light[c]);
+      sum.pilot += tap.weight * value(from.pilot);
+      sum.pilot_variance += tap.weight * value(from.pilot_variance);
+      sum.noise += tap.weight * value(from.noise);
       sum.match += tap.weight;
     }
-    if (sum.match < 0.5 * total(taps)) return std::nullopt;
+    if (sum.match < 0.5 * total_of(taps)) return {};
     for (double& c : sum.light) c /= sum.match;
     sum.pilot /= sum.match, sum.pilot_variance /= sum.match, sum.noise /= sum.match;
+    sum.match = std::min(sum.match, 1.0);
     return sum;
   }
 
-  void follow(const GatherWalk& walk, std::size_t layer, int x, int y,
-              std::vector<Found>& found) const {
-    Place place{static_cast<double>(x), static_cast<double>(y), 0.0};
-    std::vector<Tap> here{{x, y, 1.0}};
-    double gain = 1.0, change = 0.0;
-    for (const GatherStep& step : walk) {
-      const std::optional<Place> there = next(*step.link, here, place);
-      if (!there) return;
-      if (step.changes[layer]) {
-        gain *= static_cast<double>(
-            step.changes[layer]->at(static_cast<float>(place.x), static_cast<float>(place.y)));
+  [[nodiscard]] double test(const GatherLayer& layer, std::size_t index, std::size_t frame, int x,
+                            int y, double pilots) const {
+    double square = 0.0, variance = 0.0, known = 0.0;
+    for (int dy = -2; dy <= 2; ++dy) {
+      for (int dx = -2; dx <= 2; ++dx) {
+        if (!in_.guides.extent().contains(x + dx, y + dy)) continue;
+        const RecordedLight& own = (*layer.own)(x + dx, y + dy);
+        const Found other = frames_at(index, x + dx, y + dy)[frame];
+        if (own.usable == 0.0f || other.match == 0.0) continue;
+        const double k = (3.0 - std::abs(dx)) * (3.0 - std::abs(dy));
+        const double s = value(own.pilot);
+        square += k * std::pow(other.pilot - s, 2.0);
+        variance += k * (other.pilot_variance + value(own.pilot_variance) +
+                         std::pow(value(layer.tolerance) *
+                                      std::max(std::abs(other.pilot), std::abs(s)), 2.0));
+        known += k;
       }
-      change = std::max(change, std::abs(std::log(gain)) / static_cast<double>(in_.options.change));
-      place = *there;
-      here = taps(*step.guides, in_.guides(x, y), place);
-      if (total(here) < static_cast<double>(kLeastMatch)) return;
-      if (!step.lights[layer]) continue;
-      std::optional<Found> light = light_at(*step.lights[layer], here);
-      if (!light) continue;
-      light->gain = gain;
-      light->trust = 1.0 / (1.0 + change * change);
-      found.push_back(*light);
     }
-  }
-
-  // Over the frame at hand and all that were found, by how well they match.
-  [[nodiscard]] static double mean(const RecordedLight& own, float RecordedLight::*member,
-                                   const std::vector<Found>& found) {
-    double sum = static_cast<double>(own.usable * own.*member);
-    double weights = static_cast<double>(own.usable);
-    for (const Found& frame : found) {
-      sum += frame.match * (member == &RecordedLight::noise ? frame.noise : frame.pilot_variance);
-      weights += frame.match;
-    }
-    return weights > 0.0 ? sum / weights : 0.0;
-  }
-
-  [[nodiscard]] double test(const Found& frame, const RecordedLight& own, double pilots) const {
-    const double square = std::pow(frame.pilot - static_cast<double>(own.pilot), 2.0);
-    const double excess = square / (2.0 * pilots) - static_cast<double>(in_.options.soft);
-    const double far = static_cast<double>(in_.options.slope) * std::max(excess, 0.0);
-    return far < 8.0 ? std::pow(1.0 - far / 8.0, 8.0) : 0.0;
+    if (known == 0.0) return 1.0;
+    const double ratio = square / (0.5 * (variance + known * pilots));
+    return slow_falloff(value(in_.options.slope) *
+                        std::max(ratio - value(in_.options.soft), 0.0));
   }
 
   GatherSetting in_;

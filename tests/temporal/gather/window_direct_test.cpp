@@ -102,7 +102,7 @@ TEST(WindowDenoiserDirect, GatheringLowersNoise) {
   // Before the filter: one standard deviation of almost no size mixes nothing.
   const auto unfiltered = [](int ahead, int past) {
     WindowOptions options = window(ahead, past);
-    options.direct_sigmas = 1e-3f;
+    options.direct.sigmas = 1e-3f;
     return Bands(options).at(15, 99).square;
   };
   const double alone = unfiltered(0, 0);

@@ -25,7 +25,7 @@ inline std::vector<Frame> frames_of(const AnalyticOptions& options) {
 }
 
 inline void push_copy(const Frame& frame, WindowDenoiser& denoiser) {
-  Frame copy;
+  Frame copy;  // gone behind the push: nothing of it may be needed
   copy_frame(frame, copy);
   denoiser.push(copy);
 }
@@ -41,7 +41,7 @@ inline void take_outputs(WindowDenoiser& denoiser, std::vector<Planes<3>>& outpu
 /// Pushes all frames; each output is taken as soon as it is ready, or all at the end.
 inline std::vector<Planes<3>> run_window(const std::vector<Frame>& frames,
                                          const WindowOptions& options, bool is_late = false) {
-  WindowDenoiser denoiser({.extent = frames.front().extent()}, options);
+  WindowDenoiser denoiser(frames.front().extent(), 1, options);
   std::vector<Planes<3>> outputs;
   for (const Frame& frame : frames) {
     push_copy(frame, denoiser);
