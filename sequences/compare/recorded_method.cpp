@@ -52,7 +52,7 @@ double RecordedMethod::step(const std::shared_ptr<const RawFrame>& raw) {
 std::vector<std::vector<NewChannel>> RecordedMethod::compose() const {
   std::vector<std::vector<NewChannel>> channels(raw_->files.size());
   for (std::size_t v = 0; v < views_.size(); ++v) {
-    compose_view(*raw_, plan_.layers.views[v], plan_.canvas, views_[v].outputs, channels);
+    compose_view(*raw_, plan_.layers.views[v], plan_.canvas, views_[v].outputs, {}, channels);
   }
   return channels;
 }
@@ -89,7 +89,7 @@ double files_cpu_ms(const DenoisePlan& plan, const std::vector<int>& frames,
       FrameBuilder(view, plan.readings[v], plan.canvas, plan.cuts).build(raw, frame);
       std::vector<const Planes<3>*> noisy;
       for (const NoisyLight& light : frame.lights) noisy.push_back(&light.radiance);
-      compose_view(*raw, view, plan.canvas, noisy, channels);
+      compose_view(*raw, view, plan.canvas, noisy, {}, channels);
     }
     (void)write_channels(*raw, files, channels, folder);
     ms += clock.lap().cpu_ms;

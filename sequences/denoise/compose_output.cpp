@@ -34,9 +34,11 @@ NewChannel fill(int channel, const Place& place, const Extent& canvas, const Val
   return out;
 }
 
+float value_or(float value, float other) { return std::isnan(value) ? other : value; }
+
 // The value of a sum at one pixel.
-float sum_value(const SumChannels& in, const std::vector<const Plane<float>*>& lights, int x,
-                int y) {
+float sum_value(const SumChannels& in, const std::vector<const Plane<float>*>& lights,
+                const std::vector<const Plane<float>*>& emission, int x, int y) {
   double after = 0.0;
   bool has_rest = false;  // a layer of light holds what is beyond the parts
   for (std::size_t i = 0; i < lights.size(); ++i) {
@@ -46,12 +48,29 @@ float sum_value(const SumChannels& in, const std::vector<const Plane<float>*>& l
         weight * static_cast<double>(light.written(x, y)) * static_cast<double>((*lights[i])(x, y));
     has_rest |= light.value == nullptr;
   }
-  for (const Plane<float>* plane : in.emission) after += static_cast<double>((*plane)(x, y));
+  for (std::size_t i = 0; i < in.emission.size(); ++i) {
+    const float own = (*in.emission[i])(x, y);
+    after += static_cast<double>(emission.empty() ? own : value_or((*emission[i])(x, y), own));
+  }
   const SumOfParts before = parts_at(in, x, y);
   const double rest = static_cast<double>((*in.whole)(x, y)) - before.value;
   const bool passes =
       !has_rest && std::isfinite(rest) && std::abs(rest) > kRoundingAbsolute * before.size;
   return static_cast<float>(passes ? after + rest : after);
+}
+
+void compose_emission(const RawFrame& frame, const FileLayer& layer, const ExrWindow& canvas,
+                      const Planes<3>& steadied, std::vector<std::vector<NewChannel>>& outputs) {
+  const auto input = static_cast<std::size_t>(layer.input);
+  const ExrFile& file = *frame.files[input];
+  const std::vector<int> channels = channel_indices(file, "", layer);
+  const LayerPlanes& before = frame.at(layer);
+  for (std::size_t c = 0; c < std::min<std::size_t>(channels.size(), 3); ++c) {
+    const Plane<float>& own = channel_of(before, static_cast<int>(c));
+    outputs[input].push_back(
+        fill(channels[c], place_of(file, channels[c], canvas), {canvas.width, canvas.height},
+             [&](int x, int y) { return value_or(steadied[c](x, y), own(x, y)); }));
+  }
 }
 
 }  // namespace
@@ -66,6 +85,7 @@ std::vector<ExrReplacement> replacements_of(std::span<const NewChannel> channels
 
 void compose_view(const RawFrame& frame, const ViewPlan& view, const ExrWindow& canvas,
                   std::span<const Planes<3>* const> lights,
+                  std::span<const Planes<3>* const> emission,
                   std::vector<std::vector<NewChannel>>& outputs) {
   const Extent extent{canvas.width, canvas.height};
   for (std::size_t i = 0; i < view.lights.size(); ++i) {
@@ -84,16 +104,21 @@ void compose_view(const RawFrame& frame, const ViewPlan& view, const ExrWindow& 
           }));
     }
   }
+  for (std::size_t i = 0; i < emission.size(); ++i) {
+    compose_emission(frame, view.emission[i], canvas, *emission[i], outputs);
+  }
   for (const PlannedSum& sum : view.sums) {
     const auto input = static_cast<std::size_t>(sum.layer.input);
     const ExrFile& file = *frame.files[input];
     const std::vector<int> channels = channel_indices(file, "", sum.layer);
     for (std::size_t c = 0; c < std::min<std::size_t>(channels.size(), 3); ++c) {
       const SumChannels in = sum_channels(view, sum, frame, static_cast<int>(c));
-      std::vector<const Plane<float>*> denoised;
+      std::vector<const Plane<float>*> denoised, steadied;
       for (const std::size_t i : sum.lights) denoised.push_back(&(*lights[i])[c]);
-      outputs[input].push_back(fill(channels[c], place_of(file, channels[c], canvas), extent,
-                                    [&](int x, int y) { return sum_value(in, denoised, x, y); }));
+      for (const Planes<3>* layer : emission) steadied.push_back(&(*layer)[c]);
+      outputs[input].push_back(
+          fill(channels[c], place_of(file, channels[c], canvas), extent,
+               [&](int x, int y) { return sum_value(in, denoised, steadied, x, y); }));
     }
   }
 }

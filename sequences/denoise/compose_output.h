@@ -19,7 +19,8 @@ struct NewChannel {
 [[nodiscard]] std::vector<ExrReplacement> replacements_of(std::span<const NewChannel> channels);
 
 /// The new channels of a frame, for each input. `lights` are the denoised layers of a view in the
-/// order of its plan: light over its color, on the canvas.
+/// order of its plan: light over its color, on the canvas. `emission`: what ViewPlan::emission
+/// became, or none of it; where it is NaN the file's value stays.
 ///
 /// A layer of light is written as the file has it: with its color, or without. A sum is written as
 /// the sum of its parts,
@@ -28,6 +29,7 @@ struct NewChannel {
 /// than rounding (kRoundingAbsolute of the parts), and passes else.
 void compose_view(const RawFrame& frame, const ViewPlan& view, const ExrWindow& canvas,
                   std::span<const Planes<3>* const> lights,
+                  std::span<const Planes<3>* const> emission,
                   std::vector<std::vector<NewChannel>>& outputs);
 
 }  // namespace eigenlight

@@ -49,9 +49,9 @@ class Run {
     for (std::size_t v = 0; v < plan.layers.views.size(); ++v) {
       const ViewPlan& view = plan.layers.views[v];
       builders_.emplace_back(view, plan.readings[v], plan.canvas, plan.cuts);
-      denoisers_.push_back(std::make_unique<WindowDenoiser>(
-          Extent{plan.canvas.width, plan.canvas.height}, static_cast<int>(view.lights.size()),
-          options));
+      denoisers_.push_back(
+          std::make_unique<WindowDenoiser>(Extent{plan.canvas.width, plan.canvas.height},
+                                           static_cast<int>(view.lights.size()), options));
     }
   }
 
@@ -134,10 +134,14 @@ bool Run::push_frame() {
   std::optional<ReadyFrame> ready = ready_.pop();
   if (!ready) return false;
   for (std::size_t v = 0; v < denoisers_.size(); ++v) {
+    std::vector<Planes<3>> emission;
+    for (const FileLayer& layer : plan_.layers.views[v].emission) {
+      emission.push_back(view_layer(ready->raw->at(layer)));
+    }
     if (next_push_ < position_) {
-      denoisers_[v]->push_past(*ready->views[v]);
+      denoisers_[v]->push_past(*ready->views[v], emission);
     } else {
-      denoisers_[v]->push(*ready->views[v]);
+      denoisers_[v]->push(*ready->views[v], emission);
     }
   }
   if (next_push_ >= position_) {
@@ -172,7 +176,12 @@ FinishedFrame Run::denoise(std::size_t index) {
     StageClock clock;
     std::vector<const Planes<3>*> lights;
     for (int i = 0; i < denoiser.layers(); ++i) lights.push_back(&denoiser.output(i));
-    compose_view(*finished.raw, plan_.layers.views[v], plan_.canvas, lights, finished.outputs);
+    const ViewPlan& view = plan_.layers.views[v];
+    std::vector<const Planes<3>*> emission;
+    for (std::size_t i = 0; i < view.emission.size(); ++i) {
+      emission.push_back(&denoiser.emission(static_cast<int>(i)));
+    }
+    compose_view(*finished.raw, view, plan_.canvas, lights, emission, finished.outputs);
     finished.record.compose_ms += clock.lap().wall_ms;
   }
   pushed_.pop_front();

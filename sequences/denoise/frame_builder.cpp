@@ -69,19 +69,6 @@ void build_rest(const RawFrame& raw, const ViewPlan& view, Planes<3>& radiance) 
   }
 }
 
-// A view of what light is multiplied by; it is valid as long as the layers of the file.
-void view_color(const PlannedLight& light, const RawFrame& raw, Planes<3>& color) {
-  for (int c = 0; c < 3; ++c) {
-    color[c] = {};
-    const Plane<float>* plane = light_channel(light, raw, c).color;
-    if (!plane) continue;
-    const std::ptrdiff_t apart =
-        plane->height() < 2 ? 0 : reinterpret_cast<const char*>(plane->row(1)) -
-                                      reinterpret_cast<const char*>(plane->row(0));
-    color[c] = Plane<float>::view(plane->row(0), plane->extent(), apart);
-  }
-}
-
 std::int64_t count_not_finite(const Planes<3>& planes) {
   std::int64_t count = 0;
   for (int y = 0; y < planes[0].height(); ++y) {
@@ -146,7 +133,8 @@ void FrameBuilder::build_lights(const RawFrame& raw, Frame& out) {
     ensure_extent(radiance, {canvas_.width, canvas_.height});
     out.lights[i].is_direct = view_.lights[i].is_direct;
     out.lights[i].is_glossy = view_.lights[i].is_glossy;
-    view_color(view_.lights[i], raw, out.lights[i].color);
+    const std::optional<FileLayer>& color = view_.lights[i].color;
+    out.lights[i].color = color ? view_layer(raw.at(*color)) : Planes<3>{};
     if (!view_.lights[i].layer) {
       build_rest(raw, view_, radiance);
     } else {

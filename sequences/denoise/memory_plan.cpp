@@ -41,8 +41,8 @@ MemoryPlan plan_memory(const LayerPlan& layers) {
     const double raw = 4.0 * channels, frame = 4.0 * (26.0 + 3.0 * lights);
     const double record =
         kGuideBytes + kRecordBytes * lights + kColorBytes * static_cast<double>(colors.size());
-    plan.fixed += kInFlight * raw + 0.5 * kInFlight * frame + kFilterBytes * lights +
-                  (1.0 + past) * record;
+    plan.fixed +=
+        kInFlight * raw + 0.5 * kInFlight * frame + kFilterBytes * lights + (1.0 + past) * record;
     plan.per_frame += kOver * (raw + record);
   }
   return plan;

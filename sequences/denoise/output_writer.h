@@ -26,8 +26,8 @@ struct FinishedFrame {
 /// Where the checkpoint of a run is.
 [[nodiscard]] std::filesystem::path checkpoint_path(const DenoisePlan& plan);
 
-/// Writes frames in the order of push(): the outputs, and a checkpoint behind them where one is due.
-/// It holds no state, for the denoisers have none.
+/// Writes frames in the order of push(): the outputs, and a checkpoint behind them where one is
+/// due. It holds no state, for the denoisers have none.
 class OutputWriter {
  public:
   /// `description` tells the run from others. All must outlive the writer.

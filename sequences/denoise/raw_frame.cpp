@@ -97,6 +97,16 @@ std::vector<int> channel_indices(const ExrFile& file, const std::string& path,
   return channel_indices(file.channels(), path, layer);
 }
 
+Planes<3> view_layer(const LayerPlanes& layer) {
+  Planes<3> views;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Plane<float>& plane = layer[layer.size() < 3 ? 0 : c];
+    const auto apart = static_cast<std::ptrdiff_t>(plane.stride() * sizeof(float));
+    views[c] = Plane<float>::view(plane.row(0), plane.extent(), apart);
+  }
+  return views;
+}
+
 RawFrame read_raw_frame(const FrameFiles& paths, const LayerPlan& plan, const ExrWindow& canvas) {
   RawFrame frame;
   frame.frame = paths.frame;

@@ -35,6 +35,9 @@ class RawFrame {
   std::map<std::string, ExrWindow> present;
 };
 
+/// Views of the first three channels of a layer, or of one that is gray; valid as long as it is.
+[[nodiscard]] Planes<3> view_layer(const LayerPlanes& layer);
+
 /// A name that no other layer of the inputs has.
 [[nodiscard]] std::string key_of(const FileLayer& layer);
 

@@ -23,8 +23,8 @@ LayerPlanner::LayerPlanner(const std::vector<FileLayer>& layers, const LayerChoi
 }
 
 void LayerPlanner::add_light(ViewPlan& plan, std::size_t index, const LightName& name) {
-  PlannedLight light{std::string(name.what), layers_[index], std::nullopt, name.is_divided,
-                     name.is_direct, is_glossy(name.what)};
+  PlannedLight light{std::string(name.what), layers_[index], std::nullopt,
+                     name.is_divided,        name.is_direct, is_glossy(name.what)};
   std::optional<std::size_t> color;
   if (!name.color.empty()) color = find_word(plan.view, name.color);
   if (color && !why_unusable(layers_[*color], 3).empty()) color.reset();
@@ -135,7 +135,7 @@ void LayerPlanner::find_emission(ViewPlan& plan) {
   for (const std::string_view word : words_of(Role::kEmission)) {
     const auto found = find_word(plan.view, word);
     if (!found || !why_unusable(layers_[*found], 3).empty()) continue;
-    use(*found, {"emission", "copied", "part of beauty without noise"});
+    use(*found, {"emission", "steadied", "its edges, over time"});
     plan.emission.push_back(layers_[*found]);
   }
 }

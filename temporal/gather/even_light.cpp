@@ -26,14 +26,23 @@ struct CellSum {
   }
 };
 
-CellSum sum_over(const LightRecord& own, const Planes<3>& light, const Rect& cell) {
+bool is_usable(const RecordedLight& light) { return light.usable != 0.0f; }
+bool is_usable(const PackedColor& color) { return color.usable != 0; }
+float luminance_of(const RecordedLight& light) { return luminance(light.r, light.g, light.b); }
+float luminance_of(const PackedColor& color) {
+  return kColorStep * luminance(static_cast<float>(color.r), static_cast<float>(color.g),
+                                static_cast<float>(color.b));
+}
+
+template <typename Own>
+CellSum sum_over(const Plane<Own>& own, const Planes<3>& light, const Rect& cell) {
   CellSum sum;
   for (int y = cell.y0; y < cell.y1; ++y) {
     for (int x = cell.x0; x < cell.x1; ++x) {
-      const RecordedLight& from = own(x, y);
+      const Own& from = own(x, y);
       const float after = luminance(light, x, y);
-      if (from.usable == 0.0f || !std::isfinite(after)) continue;
-      sum.own += static_cast<double>(luminance(from.r, from.g, from.b));
+      if (!is_usable(from) || !std::isfinite(after)) continue;
+      sum.own += static_cast<double>(luminance_of(from));
       sum.light += static_cast<double>(after);
       sum.pixels += 1.0;
     }
@@ -96,9 +105,8 @@ class Ratios {
   std::vector<float> values_;
 };
 
-}  // namespace
-
-void even_light(const LightRecord& own, Planes<3>& light) {
+template <typename Own>
+void even_out(const Plane<Own>& own, Planes<3>& light) {
   const TileGrid grid(own.extent(), kCell, kCell);
   std::vector<CellSum> cells(static_cast<std::size_t>(grid.count()));
   parallel_for(grid.count(), [&](int i) {
@@ -115,5 +123,10 @@ void even_light(const LightRecord& own, Planes<3>& light) {
     }
   });
 }
+
+}  // namespace
+
+void even_light(const LightRecord& own, Planes<3>& light) { even_out(own, light); }
+void even_light(const ColorRecord& own, Planes<3>& color) { even_out(own, color); }
 
 }  // namespace eigenlight

@@ -1,6 +1,7 @@
 // Gives light back where a filter has lost it, and takes away what it has added.
 #pragma once
 
+#include "temporal/gather/color_record.h"
 #include "temporal/gather/light_record.h"
 
 namespace eigenlight {
@@ -14,5 +15,7 @@ namespace eigenlight {
 /// sample finds with a chance of 1/30 makes 2 % of noise here. Ratios are kept in [1/2, 2]: beyond
 /// that a single sample makes the light of a whole region.
 void even_light(const LightRecord& own, Planes<3>& light);
+/// The same for colors.
+void even_light(const ColorRecord& own, Planes<3>& color);
 
 }  // namespace eigenlight

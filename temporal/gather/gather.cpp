@@ -59,8 +59,8 @@ struct LightSum {
 class TileGather {
  public:
   TileGather(const Plane<PackedGuide>& guides, const GuideWidths& widths,
-             std::span<const GatherWalk> walks, const GatherOptions& options, const Rect& tile)
-      : guides_(guides), options_(options), tile_(tile) {
+             std::span<const GatherWalk> walks, const Rect& tile)
+      : guides_(guides), tile_(tile) {
     const Extent extent = guides.extent();
     area_ = {std::max(tile.x0 - kAround, 0), std::max(tile.y0 - kAround, 0),
              std::min(tile.x1 + kAround, extent.width), std::min(tile.y1 + kAround, extent.height)};
@@ -72,7 +72,7 @@ class TileGather {
     start(layer);
     for (std::size_t f = 0; f < places_.frames(); ++f) {
       find_windows(layer, f);
-      add_light(*places_.step(f).lights[index], f);
+      add_light(*places_.step(f).lights[index], layer.test, f);
     }
     finish(layer);
   }
@@ -135,7 +135,7 @@ class TileGather {
     for (int y = area_.y0; y < area_.y1; ++y) {
       for (int x = area_.x0; x < area_.x1; ++x) {
         terms_[at(x, y)] =
-            terms_of((*layer.own)(x, y), candidate(frame, at(x, y)), layer.tolerance);
+            terms_of((*layer.own)(x, y), candidate(frame, at(x, y)), layer.test.tolerance);
       }
       const Terms* row = &terms_[at(area_.x0, y)];
       for (int x = tile_.x0 - area_.x0; x < tile_.x1 - area_.x0; ++x) {
@@ -161,20 +161,20 @@ class TileGather {
   }
 
   // How well a frame says the same as the frame at hand.
-  [[nodiscard]] float test(const Terms& window, float pilots) const {
+  [[nodiscard]] static float weight(const LightTest& test, const Terms& window, float pilots) {
     if (window.known == 0.0f) return 1.0f;
     const float variance = 0.5f * (window.variance + window.known * pilots);
     const float ratio = window.square / (variance + kTiny);
-    return falloff(options_.slope * std::max(0.0f, ratio - options_.soft));
+    return falloff(test.slope * std::max(0.0f, ratio - test.soft));
   }
 
-  void add_light(const LightRecord& record, std::size_t frame) {
+  void add_light(const LightRecord& record, const LightTest& test, std::size_t frame) {
     const std::span<const FrameTaps> all = places_.taps(frame);
     each_pixel([&](int x, int y, std::size_t i) {
       const Candidate& other = candidate(frame, at(x, y));
       if (other.match == 0.0f) return;
       LightSum& sum = sums_[i];
-      const float w = other.match * test(windows_[i], sum.pilots);
+      const float w = other.match * weight(test, windows_[i], sum.pilots);
       if (w == 0.0f) return;
       float r = 0.0f, g = 0.0f, b = 0.0f, usable = 0.0f;
       each_tap(all[at(x, y)], [&](int tx, int ty, float weight) {
@@ -202,11 +202,15 @@ class TileGather {
 
   void steady(const GatherColor& color, std::size_t index, int x, int y) const {
     const PackedColor& own = (*color.own)(x, y);
-    if (own.usable == 0 || !shows_surface(guides_(x, y))) return;
+    if (own.usable == 0) {
+      for (auto& plane : *color.color) plane(x, y) = kNone;
+      return;
+    }
+    const std::size_t frames = own.usable == kCertainColor ? 0 : places_.frames();
     std::array<float, 3> sum{static_cast<float>(own.r), static_cast<float>(own.g),
                              static_cast<float>(own.b)};
     float total = 1.0f;
-    for (std::size_t f = 0; f < places_.frames(); ++f) {
+    for (std::size_t f = 0; f < frames; ++f) {
       const FrameTaps& taps = places_.taps(f)[at(x, y)];
       if (taps.total == 0.0f) continue;
       const ColorRecord& record = *places_.step(f).colors[index];
@@ -225,7 +229,7 @@ class TileGather {
       r *= over, g *= over, b *= over;
       const float dr = r - static_cast<float>(own.r), dg = g - static_cast<float>(own.g),
                   db = b - static_cast<float>(own.b);
-      const float width = options_.color / kColorStep;
+      const float width = color.width / kColorStep;
       const float w = std::min(usable, 1.0f) * squares * over * over *
                       falloff((dr * dr + dg * dg + db * db) / (width * width));
       sum[0] += w * r, sum[1] += w * g, sum[2] += w * b;
@@ -235,7 +239,6 @@ class TileGather {
   }
 
   const Plane<PackedGuide>& guides_;
-  const GatherOptions& options_;
   Rect tile_, area_;
   FramePlaces places_;
   std::vector<Candidate> candidates_;
@@ -245,18 +248,18 @@ class TileGather {
 
 }  // namespace
 
-void GatherOptions::validate() const {
+void LightTest::validate() const {
+  EL_CHECK(tolerance >= 0.0f && tolerance <= 1.0f, "tolerance {}: expected [0, 1]", tolerance);
   EL_CHECK(soft >= 0.0f && soft <= 100.0f, "soft {}: expected [0, 100]", soft);
   EL_CHECK(slope >= 0.0f && slope <= 100.0f, "slope {}: expected [0, 100]", slope);
-  EL_CHECK(color > 0.0f && color <= 10.0f, "color {}: expected (0, 10]", color);
 }
 
 void gather(const Plane<PackedGuide>& guides, const GuideWidths& widths,
             std::span<const GatherWalk> walks, std::span<const GatherLayer> layers,
-            std::span<const GatherColor> colors, const GatherOptions& options) {
+            std::span<const GatherColor> colors) {
   const TileGrid grid(guides.extent(), kTile, kTile);
   parallel_for(grid.count(), [&](int index) {
-    TileGather tile(guides, widths, walks, options, grid.tile(index));
+    TileGather tile(guides, widths, walks, grid.tile(index));
     for (std::size_t i = 0; i < layers.size(); ++i) tile.light(layers[i], i);
     for (std::size_t i = 0; i < colors.size(); ++i) tile.color(colors[i], i);
   });

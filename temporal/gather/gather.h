@@ -8,14 +8,14 @@
 
 namespace eigenlight {
 
-struct GatherOptions {
-  /// [0, 100] Ratio up to which the light of another frame counts in full, and [0, 100] how fast
-  /// weights fall beyond. Variances of pilots do not know that neighbors are filtered from the same
-  /// samples, and are too small by about this factor.
-  float soft = 8.0f, slope = 0.5f;
-  /// (0, 10] Difference of colors, as a length, that weighs another frame by 1/e. Means over 4
-  /// samples at the edges of textures differ by as much.
-  float color = 0.2f;
+/// What light of another frame counts as the same.
+struct LightTest {
+  /// [0, 1] Change of light, over the light itself, that is none.
+  float tolerance = 0.05f;
+  /// [0, 100] Ratio up to which another frame counts in full. Variances of pilots do not know that
+  /// neighbors are filtered from the same samples, and are too small by about this factor.
+  float soft = 8.0f;
+  float slope = 0.5f;  ///< [0, 100] how fast weights fall beyond
 
   void validate() const;  ///< throws std::invalid_argument naming the field
 };
@@ -23,8 +23,7 @@ struct GatherOptions {
 /// A layer of light of the frame at hand.
 struct GatherLayer {
   const LightRecord* own;
-  /// [0, 1] Change of light, over the light itself, that counts as none.
-  float tolerance;
+  LightTest test;
   Planes<3>* light;        ///< out; NaN where there is none
   Plane<float>* variance;  ///< out: of its luminance
 };
@@ -32,7 +31,8 @@ struct GatherLayer {
 /// A color of the frame at hand.
 struct GatherColor {
   const ColorRecord* own;
-  Planes<3>* color;  ///< out; where its own is not usable it stays as it is
+  float width;       ///< > 0: difference, as a length, that weighs another frame by 1/e
+  Planes<3>* color;  ///< out; NaN where its own is not usable
 };
 
 /// For each pixel p of a surface,
@@ -54,10 +54,10 @@ struct GatherColor {
 /// RecordedLight::noise over all frames. Where the light of p is not usable its 1 is 0.
 ///
 /// Colors alike, without windows, for they are seen and have little noise:
-///   w_j = min(m_j, 1) falloff(|c_j - c|^2 / color^2) S_j,
+///   w_j = min(m_j, 1) falloff(|c_j - c|^2 / width^2) S_j,
 /// S_j the sum of squared tap weights over the square of their sum: between pixels textures blur.
 void gather(const Plane<PackedGuide>& guides, const GuideWidths& widths,
             std::span<const GatherWalk> walks, std::span<const GatherLayer> layers,
-            std::span<const GatherColor> colors, const GatherOptions& options);
+            std::span<const GatherColor> colors);
 
 }  // namespace eigenlight

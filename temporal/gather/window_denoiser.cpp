@@ -19,8 +19,7 @@ const WindowOptions& checked(const WindowOptions& options) {
 }
 
 void validate_tuning(const LightTuning& tuning) {
-  EL_CHECK(tuning.tolerance >= 0.0f && tuning.tolerance <= 1.0f, "tolerance {}: expected [0, 1]",
-           tuning.tolerance);
+  tuning.test.validate();
   EL_CHECK(tuning.sigmas > 0.0f && tuning.sigmas <= 100.0f, "sigmas {}: expected (0, 100]",
            tuning.sigmas);
 }
@@ -29,6 +28,7 @@ void validate_tuning(const LightTuning& tuning) {
 
 WindowOptions::WindowOptions() {
   pilot.radius = 1;
+  filter.radius = 1;
   filter.passes = 5;
 }
 
@@ -37,8 +37,9 @@ void WindowOptions::validate() const {
            kMostGathered);
   EL_CHECK(past >= 0 && past <= kMostGathered, "past {}: expected 0 to {}", past, kMostGathered);
   guides.validate();
-  gather.validate();
   for (const LightTuning& tuning : {direct, diffuse, glossy}) validate_tuning(tuning);
+  EL_CHECK(color_width > 0.0f, "color_width {}: expected more than 0", color_width);
+  EL_CHECK(emission_width > 0.0f, "emission_width {}: expected more than 0", emission_width);
   EL_CHECK(pilot_sigmas > 0.0f && pilot_sigmas <= 100.0f, "pilot_sigmas {}: expected (0, 100]",
            pilot_sigmas);
 }
@@ -62,7 +63,8 @@ const LightTuning& WindowDenoiser::tuning_of(const NoisyLight& light) const {
 }
 
 // Layers whose colors are the same memory share a record.
-void WindowDenoiser::record_colors(const FrameInput& frame, Record& record) {
+void WindowDenoiser::record_colors(const FrameInput& frame, std::span<const Planes<3>> emission,
+                                   Record& record) {
   std::vector<const float*> known;
   record.color_of.assign(frame.lights.size(), -1);
   for (std::size_t i = 0; i < frame.lights.size(); ++i) {
@@ -76,7 +78,12 @@ void WindowDenoiser::record_colors(const FrameInput& frame, Record& record) {
     if (record.colors.size() < known.size()) record.colors.emplace_back();
     record_color(color, record.colors[known.size() - 1]);
   }
-  record.colors.resize(known.size());
+  record.colors.resize(known.size() + emission.size());
+  record.scales.resize(emission.size());
+  for (std::size_t i = 0; i < emission.size(); ++i) {
+    EL_CHECK(emission[i][0].extent() == extent_, "frame {}: size of emission differs", frame.index);
+    record_emission(emission[i], record.colors[known.size() + i], record.scales[i]);
+  }
 }
 
 void WindowDenoiser::count(const FrameInput& frame, Record& record) const {
@@ -95,13 +102,13 @@ void WindowDenoiser::count(const FrameInput& frame, Record& record) const {
       report.non_finite_pixels += is_usable ? 0 : 1;
     }
   }
-  report.new_pixels = has_before
-                          ? count_new(record.back, record.guides,
-                                      records_[records_.size() - 2].guides, options_.guides)
-                          : report.surface_pixels;
+  report.new_pixels = has_before ? count_new(record.back, record.guides,
+                                             records_[records_.size() - 2].guides, options_.guides)
+                                 : report.surface_pixels;
 }
 
-WindowDenoiser::Record& WindowDenoiser::add_record(const FrameInput& frame) {
+WindowDenoiser::Record& WindowDenoiser::add_record(const FrameInput& frame,
+                                                   std::span<const Planes<3>> emission) {
   EL_CHECK(frame.lights.size() == outputs_.size(), "frame {}: {} layers of light, expected {}",
            frame.index, frame.lights.size(), outputs_.size());
   EL_CHECK(frame.extent() == extent_, "frame {}: its size differs", frame.index);
@@ -120,7 +127,7 @@ WindowDenoiser::Record& WindowDenoiser::add_record(const FrameInput& frame) {
   pack_guides(frame, options_.guides, record.guides);
   link_back(frame, record.back);
   recorder_.record(frame, record.guides, record.lights);
-  record_colors(frame, record);
+  record_colors(frame, emission, record);
   count(frame, record);
   if (!record.report.cut && records_.size() - next_ >= 2) {
     Record& before = records_[records_.size() - 2];
@@ -130,11 +137,13 @@ WindowDenoiser::Record& WindowDenoiser::add_record(const FrameInput& frame) {
   return record;
 }
 
-void WindowDenoiser::push(const FrameInput& frame) { add_record(frame); }
+void WindowDenoiser::push(const FrameInput& frame, std::span<const Planes<3>> emission) {
+  add_record(frame, emission);
+}
 
-void WindowDenoiser::push_past(const FrameInput& frame) {
+void WindowDenoiser::push_past(const FrameInput& frame, std::span<const Planes<3>> emission) {
   EL_CHECK(next_ == records_.size(), "frame {}: frames to be denoised wait already", frame.index);
-  add_record(frame);
+  add_record(frame, emission);
   ++next_;
   drop_used();
 }
@@ -165,15 +174,17 @@ void WindowDenoiser::gather_all(const Record& record) {
   const std::vector<GatherWalk> walks{walk(-1, options_.past), walk(1, options_.ahead)};
   std::vector<GatherLayer> layers;
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
-    layers.push_back(
-        {&record.lights[i], record.tuning[i].tolerance, &outputs_[i], &variances_[i]});
+    layers.push_back({&record.lights[i], record.tuning[i].test, &outputs_[i], &variances_[i]});
   }
   std::vector<GatherColor> colors;
   while (colors_.size() < record.colors.size()) colors_.push_back(make_planes<3>(extent_));
+  emission_at_ = record.colors.size() - record.scales.size();
   for (std::size_t i = 0; i < record.colors.size(); ++i) {
-    colors.push_back({&record.colors[i], &colors_[i]});
+    const bool is_emission = i >= emission_at_;
+    colors.push_back({&record.colors[i],
+                      is_emission ? options_.emission_width : options_.color_width, &colors_[i]});
   }
-  gather(record.guides, options_.guides, walks, layers, colors, options_.gather);
+  gather(record.guides, options_.guides, walks, layers, colors);
 }
 
 // Multiplies light by the steadied color over the frame's own.
@@ -196,6 +207,17 @@ void WindowDenoiser::apply_colors(const Record& record, std::size_t layer) {
   });
 }
 
+void WindowDenoiser::scale_emission(const Record& record) {
+  for (std::size_t i = 0; i < record.scales.size(); ++i) {
+    Planes<3>& emission = colors_[emission_at_ + i];
+    parallel_for(extent_.height, [&](int y) {
+      for (int x = 0; x < extent_.width; ++x) {
+        for (auto& plane : emission) plane(x, y) *= record.scales[i](x, y);
+      }
+    });
+  }
+}
+
 bool WindowDenoiser::step() {
   const auto ahead = static_cast<std::size_t>(options_.ahead);
   if (next_ == records_.size()) return false;
@@ -210,10 +232,12 @@ bool WindowDenoiser::step() {
   }
   filter_.process(record.guides, filtered);
   record.report[Stage::kFilter] += clock.lap();
+  for (std::size_t i = 0; i < record.colors.size(); ++i) even_light(record.colors[i], colors_[i]);
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     even_light(record.lights[i], outputs_[i]);
     apply_colors(record, i);
   }
+  scale_emission(record);
   record.report[Stage::kCorrect] += clock.lap();
   report_ = record.report;
   ++next_;

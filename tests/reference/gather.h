@@ -15,7 +15,6 @@ struct GatherSetting {
   const Plane<PackedGuide>& guides;
   const GuideWidths& widths;
   const std::vector<GatherWalk>& walks;
-  const GatherOptions& options;
 };
 
 /// What gather() makes of one pixel of a layer.
@@ -53,8 +52,8 @@ class SlowGather {
     return out;
   }
 
-  [[nodiscard]] std::array<double, 3> color(const ColorRecord& own, std::size_t index, int x,
-                                            int y) const {
+  [[nodiscard]] std::array<double, 3> color(const ColorRecord& own, double width, std::size_t index,
+                                            int x, int y) const {
     const std::array<double, 3> here = values(own(x, y));
     std::array<double, 3> sum = here;
     double total = 1.0;
@@ -71,7 +70,7 @@ class SlowGather {
       if (usable < 0.5 * total_of(taps)) continue;
       for (std::size_t c = 0; c < 3; ++c) {
         there[c] /= usable;
-        far += std::pow((there[c] - here[c]) / value(in_.options.color), 2.0);
+        far += std::pow((there[c] - here[c]) / width, 2.0);
       }
       const double w = std::min(usable, 1.0) * squares / (usable * usable) * slow_falloff(far);
       for (std::size_t c = 0; c < 3; ++c) sum[c] += w * there[c];
@@ -214,16 +213,17 @@ class SlowGather {
         const double k = (3.0 - std::abs(dx)) * (3.0 - std::abs(dy));
         const double s = value(own.pilot);
         square += k * std::pow(other.pilot - s, 2.0);
-        variance += k * (other.pilot_variance + value(own.pilot_variance) +
-                         std::pow(value(layer.tolerance) *
-                                      std::max(std::abs(other.pilot), std::abs(s)), 2.0));
+        variance +=
+            k *
+            (other.pilot_variance + value(own.pilot_variance) +
+             std::pow(value(layer.test.tolerance) * std::max(std::abs(other.pilot), std::abs(s)),
+                      2.0));
         known += k;
       }
     }
     if (known == 0.0) return 1.0;
     const double ratio = square / (0.5 * (variance + known * pilots));
-    return slow_falloff(value(in_.options.slope) *
-                        std::max(ratio - value(in_.options.soft), 0.0));
+    return slow_falloff(value(layer.test.slope) * std::max(ratio - value(layer.test.soft), 0.0));
   }
 
   GatherSetting in_;

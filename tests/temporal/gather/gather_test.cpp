@@ -113,14 +113,15 @@ struct Shot {
 
 // What gather() makes of a shot.
 struct Gathered {
-  explicit Gathered(const Shot& shot, const GatherOptions& options = {}) {
+  explicit Gathered(const Shot& shot, LightTest test = {}, float width = 0.2f) {
     for (std::size_t i = 0; i < kLayers; ++i) {
       light[i] = make_planes<3>(kExtent);
       variance[i] = Plane<float>(kExtent);
-      layers.push_back({&shot.own[i], i == 0 ? 0.0f : 0.3f, &light[i], &variance[i]});
+      test.tolerance = i == 0 ? 0.0f : 0.3f;
+      layers.push_back({&shot.own[i], test, &light[i], &variance[i]});
     }
-    const std::array<GatherColor, 1> colors{{{&shot.own_color, &color}}};
-    gather(shot.at_hand, shot.widths, shot.walks, layers, colors, options);
+    const std::array<GatherColor, 1> colors{{{&shot.own_color, width, &color}}};
+    gather(shot.at_hand, shot.widths, shot.walks, layers, colors);
   }
   Gathered(const Gathered&) = delete;
   Gathered& operator=(const Gathered&) = delete;
@@ -138,9 +139,9 @@ double error_of(float found, double wanted) {
   return std::abs(static_cast<double>(found) - wanted) / (std::abs(wanted) + 0.01);
 }
 
-void expect_twin(const Shot& shot, const GatherOptions& options) {
-  const Gathered found(shot, options);
-  const reference::SlowGather twin({shot.at_hand, shot.widths, shot.walks, options});
+void expect_twin(const Shot& shot, const LightTest& test, float width) {
+  const Gathered found(shot, test, width);
+  const reference::SlowGather twin({shot.at_hand, shot.widths, shot.walks});
   int changed = 0, other_steps = 0;
   for (int y = 0; y < kExtent.height; ++y) {
     for (int x = 0; x < kExtent.width; ++x) {
@@ -155,7 +156,8 @@ void expect_twin(const Shot& shot, const GatherOptions& options) {
         changed += found.light[i][0](x, y) != shot.own[i](x, y).r;
       }
       if (shot.own_color(x, y).usable != 0) {
-        const std::array<double, 3> wanted = twin.color(shot.own_color, 0, x, y);
+        const std::array<double, 3> wanted =
+            twin.color(shot.own_color, static_cast<double>(width), 0, x, y);
         for (std::size_t c = 0; c < 3; ++c) {
           error = std::max(error, error_of(found.color[c](x, y), wanted[c]));
         }
@@ -171,9 +173,9 @@ void expect_twin(const Shot& shot, const GatherOptions& options) {
 
 TEST(Gather, EqualsItsTwin) {
   const Shot shot;
-  expect_twin(shot, {});
-  expect_twin(shot, {.soft = 0.5f, .slope = 3.0f, .color = 0.05f});
-  expect_twin(shot, {.soft = 0.0f, .slope = 0.0f, .color = 10.0f});
+  expect_twin(shot, {}, 0.2f);
+  expect_twin(shot, {.soft = 0.5f, .slope = 3.0f}, 0.05f);
+  expect_twin(shot, {.soft = 0.0f, .slope = 0.0f}, 10.0f);
 }
 
 TEST(Gather, SameBitsOnAnyNumberOfThreads) {
@@ -195,12 +197,12 @@ TEST(Gather, SameBitsOnAnyNumberOfThreads) {
 }
 
 TEST(Gather, BadOptionsAreNamed) {
-  EXPECT_THAT([] { GatherOptions{.soft = -1.0f}.validate(); },
+  EXPECT_THAT([] { LightTest{.tolerance = 1.5f}.validate(); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("tolerance 1.5")));
+  EXPECT_THAT([] { LightTest{.soft = -1.0f}.validate(); },
               ThrowsMessage<std::invalid_argument>(HasSubstr("soft -1")));
-  EXPECT_THAT([] { GatherOptions{.slope = 101.0f}.validate(); },
+  EXPECT_THAT([] { LightTest{.slope = 101.0f}.validate(); },
               ThrowsMessage<std::invalid_argument>(HasSubstr("slope 101")));
-  EXPECT_THAT([] { GatherOptions{.color = 0.0f}.validate(); },
-              ThrowsMessage<std::invalid_argument>(HasSubstr("color 0")));
 }
 
 }  // namespace

@@ -73,7 +73,7 @@ TEST(WindowDenoiserDirect, AShadowLeavesNoGhost) {
   }
   // Without the test of pilots there is one.
   WindowOptions untested = window(0);
-  untested.gather.slope = 0.0f;
+  untested.direct.test.slope = 0.0f;
   EXPECT_GT(Bands(untested).at(-10, -2).mean, 2.0);
 }
 
@@ -116,8 +116,8 @@ TEST(WindowDenoiserDirect, GatheringLowersNoise) {
 TEST(WindowDenoiserDirect, AWideTestLowersTheErrorOfTheFilteredPicture) {
   const auto wide = [](int ahead) {
     WindowOptions options = window(ahead);
-    options.gather.soft = 30.0f;
-    options.gather.slope = 0.1f;
+    options.direct.test.soft = 30.0f;
+    options.direct.test.slope = 0.1f;
     return Bands(options).at(-99, 99).square;
   };
   const double alone = Bands(window(0, 0)).at(-99, 99).square;
