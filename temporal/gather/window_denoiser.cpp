@@ -232,7 +232,8 @@ bool WindowDenoiser::step() {
   }
   filter_.process(record.guides, filtered);
   record.report[Stage::kFilter] += clock.lap();
-  for (std::size_t i = 0; i < record.colors.size(); ++i) even_light(record.colors[i], colors_[i]);
+  // Not of emission: what flickers at the edges of a lamp is the number of samples that hit it.
+  for (std::size_t i = 0; i < emission_at_; ++i) even_light(record.colors[i], colors_[i]);
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     even_light(record.lights[i], outputs_[i]);
     apply_colors(record, i);

@@ -67,8 +67,9 @@ TEST(WindowDenoiser, LaterFramesLowerTheError) {
   options.pattern = 0.0f;
   const double alone = quality(options, 0).error, helped = quality(options, 4).error;
   // One frame has a relative error of 1.
-  EXPECT_LT(alone, 1.0 / 200.0);
-  EXPECT_LT(helped, 0.75 * alone);
+  EXPECT_LT(alone, 1.0 / 800.0);
+  // What even_light() measures in one frame is most of what is left.
+  EXPECT_LT(helped, 0.9 * alone);
 }
 
 TEST(WindowDenoiser, EachFrameComesOutOnceAndInOrder) {
