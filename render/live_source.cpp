@@ -9,6 +9,7 @@
 #include "frame/random.h"
 #include "frame/tiles.h"
 #include "render/lights/light_set.h"
+#include "render/paths/direct_sampler.h"
 #include "render/paths/gbuffer.h"
 #include "render/paths/path_tracer.h"
 #include "render/paths/sample_mean.h"
@@ -23,6 +24,10 @@ namespace {
 // Small tiles balance a small image over many cores; larger tiles let neighboring rays share cache
 // lines.
 constexpr int kTileSide = 16;
+
+std::size_t index_in(const Tile& tile, glm::ivec2 at) {
+  return static_cast<std::size_t>((at.y - tile.y0) * kTileSide + at.x - tile.x0);
+}
 
 // Direct and indirect light draw from independent random sequences.
 constexpr std::uint32_t kIndirectStream = 0;
@@ -48,6 +53,8 @@ void RenderOptions::validate() const {
   EL_CHECK(spp >= 1 && spp <= 65536, "spp {}: expected 1 to 65536", spp);
   EL_CHECK(direct_spp >= 0 && direct_spp <= 65536, "direct_spp {}: expected 0 to 65536",
            direct_spp);
+  EL_CHECK(penumbra_spp >= 0 && penumbra_spp <= 65536, "penumbra_spp {}: expected 0 to 65536",
+           penumbra_spp);
   EL_CHECK(bounces >= 1 && bounces <= 64, "bounces {}: expected 1 to 64", bounces);
 }
 
@@ -59,6 +66,7 @@ struct LiveSource::State {
         surfaces(scene, geometry),
         lights(scene, geometry),
         tracer({geometry, surfaces, lights}, opts.bounces),
+        direct(tracer, opts.extent, {opts.direct_spp, opts.spp, opts.penumbra_spp}),
         grid(opts.extent, kTileSide, kTileSide),
         hits(opts.extent),
         samples_drawn(opts.extent),
@@ -69,7 +77,7 @@ struct LiveSource::State {
   template <typename Count>
   void sample_indirect(const Tile& tile, int frame, const Count& count, Planes<3>& mean,
                        RayCounters& tally);
-  [[nodiscard]] glm::vec3 sample_direct(glm::ivec2 at, int frame, RayCounters& tally) const;
+  void refine(const Tile& tile, Frame& frame);
   void add_counters(FrameInput& frame) const;
   [[nodiscard]] std::uint32_t key(glm::ivec2 at, std::uint32_t stream, int frame) const {
     return hash_key(options.seed, frame, at.x, at.y, stream);
@@ -83,6 +91,7 @@ struct LiveSource::State {
   SurfaceTable surfaces;
   LightSet lights;
   PathTracer tracer;
+  DirectSampler direct;
   TileGrid grid;
   PreviousView previous;
   std::vector<glm::mat4> previous_poses;  // of all instances
@@ -111,11 +120,11 @@ void LiveSource::State::set_scene(Frame& frame) {
 }
 
 // Writes to `mean` the mean of `count(x, y)` new samples of indirect light at each surface pixel of
-// the tile, and 0 at all other pixels.
+// the tile, and 0 at all other pixels. What their first rays met is direct light.
 template <typename Count>
 void LiveSource::State::sample_indirect(const Tile& tile, int frame, const Count& count,
                                         Planes<3>& mean, RayCounters& tally) {
-  std::array<FiniteMean, kTileSide * kTileSide> means;
+  std::array<FiniteMean, kTileSide * kTileSide> means, met;
   SampleQueue queue(tracer, tally);
   auto pixel = means.begin();
   for (int y = tile.y0; y < tile.y1; ++y) {
@@ -124,7 +133,8 @@ void LiveSource::State::sample_indirect(const Tile& tile, int frame, const Count
       const std::uint32_t k = key({x, y}, kIndirectStream, frame);
       const std::uint32_t end = samples_drawn(x, y) + count(x, y);
       for (std::uint32_t& i = samples_drawn(x, y); i != end; ++i) {
-        queue.add(hits(x, y).point, Sampler(k, i), *pixel);
+        queue.add(hits(x, y).point, Sampler(k, i), *pixel,
+                  options.direct_spp > 0 ? &met[index_in(tile, {x, y})] : nullptr);
       }
     }
   }
@@ -134,33 +144,30 @@ void LiveSource::State::sample_indirect(const Tile& tile, int frame, const Count
     for (int x = tile.x0; x < tile.x1; ++x, ++pixel) {
       const bool lit = hits(x, y).kind == GuideHit::Kind::kSurface && count(x, y) > 0;
       store_pixel(lit ? pixel->value() : glm::vec3(0.0f), x, y, mean);
+      if (!lit) continue;
+      const std::uint32_t drawn = count(x, y), before = samples_drawn(x, y) - drawn;
+      direct.add_met({x, y}, met[index_in(tile, {x, y})].value(), drawn, before);
     }
   }
 }
 
-glm::vec3 LiveSource::State::sample_direct(glm::ivec2 at, int frame, RayCounters& tally) const {
-  const GuideHit& guide = hits(at.x, at.y);
-  if (guide.kind != GuideHit::Kind::kSurface || options.direct_spp == 0) return glm::vec3(0.0f);
-  const std::uint32_t k = key(at, kDirectStream, frame);
-  FiniteMean mean;
-  for (int i = 0; i < options.direct_spp; ++i) {
-    Sampler sampler(k, static_cast<std::uint32_t>(i));
-    mean.add(tracer.direct(guide.point, sampler, tally.rays), tally);
-  }
-  return mean.value();
+// Of direct light, once the first samples of all tiles are there.
+void LiveSource::State::refine(const Tile& tile, Frame& frame) {
+  RayCounters& tally = counters[static_cast<std::size_t>(tile.index)];
+  const auto key_of = [&](glm::ivec2 at) { return key(at, kDirectStream, frame.index); };
+  direct.refine(tile, hits, key_of, frame.direct, tally);
 }
 
 void LiveSource::State::render(const Tile& tile, Frame& frame) {
   RayCounters tally;
   tally.rays = trace_guides({geometry, surfaces, lights}, previous, tile, frame, hits);
   for (int y = tile.y0; y < tile.y1; ++y) {
-    for (int x = tile.x0; x < tile.x1; ++x) {
-      samples_drawn(x, y) = 0;
-      store_pixel(sample_direct({x, y}, frame.index, tally), x, y, frame.direct);
-    }
+    for (int x = tile.x0; x < tile.x1; ++x) samples_drawn(x, y) = 0;
   }
   const auto count = [this](int, int) { return static_cast<std::uint32_t>(options.spp); };
   sample_indirect(tile, frame.index, count, frame.lights[0].radiance, tally);
+  const auto key_of = [&](glm::ivec2 at) { return key(at, kDirectStream, frame.index); };
+  direct.sample(tile, hits, key_of, tally);
   counters[static_cast<std::size_t>(tile.index)] = tally;
 }
 
@@ -199,6 +206,8 @@ bool LiveSource::next(Frame& frame) {
   frame.non_finite_samples = 0;
   s.set_scene(frame);
   for_each_tile(s.grid, [&](const Tile& tile) { s.render(tile, frame); });
+  for_each_tile(s.grid, [&](const Tile& tile) { s.refine(tile, frame); });
+  s.direct.finish();
   s.add_counters(frame);
   ++s.position;
   return true;
@@ -226,20 +235,27 @@ bool LiveSource::resample(const Plane<std::uint8_t>& extra, FrameInput& frame,
 }
 
 PictureStats LiveSource::picture(const AntialiasOptions& options, const Frame& frame,
-                                 const Planes<3>& indirect, Planes<3>& out) {
+                                 const Planes<3>& indirect, Planes<3>& out,
+                                 const Planes<3>* direct) {
   const State& s = *state_;
   EL_CHECK(s.position > 0 && frame.index == s.frames[s.position - 1],
            "picture: frame {} is not the last frame that next() delivered", frame.index);
   EL_CHECK(s.options.direct_spp > 0, "picture: direct_spp is 0, expected at least 1");
   const World world{s.geometry, s.surfaces, s.lights};
-  const GuideMap guides{frame, s.hits, indirect};
-  return render_picture(
-      options, {world, s.tracer, guides, s.options.spp, s.options.direct_spp, s.options.seed}, out);
+  const GuideMap guides{frame, s.hits, indirect, direct ? *direct : frame.direct};
+  return render_picture(options,
+                        {world, s.tracer, guides, s.options.spp, s.options.direct_spp,
+                         s.options.seed, direct ? &s.direct.sun() : nullptr},
+                        out);
 }
+
+const Planes<3>& LiveSource::sun() const { return state_->direct.sun(); }
+const Planes<3>& LiveSource::soft() const { return state_->direct.soft(); }
 
 void LiveSource::rewind_resampling() {
   // Pixels without a surface draw no samples, so their value does not matter.
   state_->samples_drawn.fill(static_cast<std::uint32_t>(state_->options.spp));
+  state_->direct.rewind();
 }
 
 }  // namespace eigenlight

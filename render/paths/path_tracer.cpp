@@ -87,44 +87,67 @@ glm::vec3 PathTracer::unoccluded_light(const SurfacePoint& point, const LightSam
   return weight * cosine / kPi * sample.value * world_.geometry.glass_tint(ray);
 }
 
-// Light sampling: light that reaches the point directly from one sun and one local light.
-glm::vec3 PathTracer::sample_lights(const SurfacePoint& point, Sampler& sampler, bool quick,
-                                    std::int64_t& rays) const {
-  glm::vec3 sum(0.0f);
-  if (world_.lights.has_suns()) {
-    const auto sample = world_.lights.sample_sun(point.normal, sampler.next_2d());
-    if (sample) sum += unoccluded_light(point, *sample, {0.0f, quick}, rays);
-  }
-  if (world_.lights.has_local()) {
-    const float pick = sampler.next_1d();
-    const auto sample = world_.lights.sample_local(point.origin, pick, sampler.next_2d());
-    if (sample) sum += unoccluded_light(point, *sample, {1.0f, quick}, rays);
-  }
-  return sum;
+// Light sampling: light that reaches the point directly from one sun.
+glm::vec3 PathTracer::sample_sun(const SurfacePoint& point, Sampler& sampler, bool quick,
+                                 std::int64_t& rays) const {
+  if (!world_.lights.has_suns()) return glm::vec3(0.0f);
+  const auto sample = world_.lights.sample_sun(point.normal, sampler.next_2d());
+  return sample ? unoccluded_light(point, *sample, {0.0f, quick}, rays) : glm::vec3(0.0f);
+}
+
+// The same of one local light.
+glm::vec3 PathTracer::sample_local(const SurfacePoint& point, Sampler& sampler, bool quick,
+                                   std::int64_t& rays) const {
+  if (!world_.lights.has_local()) return glm::vec3(0.0f);
+  const float pick = sampler.next_1d();
+  const auto sample = world_.lights.sample_local(point.origin, pick, sampler.next_2d());
+  return sample ? unoccluded_light(point, *sample, {1.0f, quick}, rays) : glm::vec3(0.0f);
+}
+
+bool PathTracer::reaches(const SurfacePoint& point, const std::optional<LightSample>& sample,
+                         std::int64_t& rays) const {
+  if (!sample) return false;
+  const glm::vec3 light = unoccluded_light(point, *sample, {}, rays);
+  return std::max({light.x, light.y, light.z}) > 0.0f;
+}
+
+bool PathTracer::sees_sun(const SurfacePoint& point, std::int64_t& rays) const {
+  return world_.lights.has_suns() &&
+         reaches(point, world_.lights.sample_sun(point.normal, glm::vec2(0.5f)), rays);
 }
 
 std::uint8_t PathTracer::lit_by(const SurfacePoint& point, std::int64_t& rays) const {
   const glm::vec2 middle(0.5f);
-  const auto reaches = [&](const std::optional<LightSample>& sample) {
-    if (!sample) return false;
-    const glm::vec3 light = unoccluded_light(point, *sample, {}, rays);
-    return std::max({light.x, light.y, light.z}) > 0.0f;
-  };
-  std::uint8_t lit = 0;
-  if (world_.lights.has_suns() && reaches(world_.lights.sample_sun(point.normal, middle))) lit |= 1;
+  std::uint8_t lit = sees_sun(point, rays) ? 1 : 0;
   if (world_.lights.has_local() &&
-      reaches(world_.lights.sample_local(point.origin, middle.x, middle))) {
+      reaches(point, world_.lights.sample_local(point.origin, middle.x, middle), rays)) {
     lit |= 2;
   }
   return lit;
 }
 
-glm::vec3 PathTracer::direct(const SurfacePoint& point, Sampler& sampler,
-                             std::int64_t& rays) const {
+PathTracer::DirectParts PathTracer::direct_parts(const SurfacePoint& point, Sampler& sampler,
+                                                 bool sends_ray, std::int64_t& rays) const {
+  // Each part has its own numbers of a sample, whichever are wanted.
   Bounce bounce;
   const bool above = sample_ray(point, sampler, bounce);
-  const glm::vec3 sum = sample_lights(point, sampler, false, rays);
-  return above ? sum + emission_along(bounce, rays) : sum;
+  DirectParts parts;
+  parts.sun = sample_sun(point, sampler, false, rays);
+  parts.local = sample_local(point, sampler, false, rays);
+  if (above && sends_ray) parts.met = emission_along(bounce, rays);
+  return parts;
+}
+
+glm::vec3 PathTracer::sun_light(const SurfacePoint& point, Sampler& sampler,
+                                std::int64_t& rays) const {
+  (void)sampler.next_2d();  // of the ray
+  return sample_sun(point, sampler, false, rays);
+}
+
+glm::vec3 PathTracer::direct(const SurfacePoint& point, Sampler& sampler,
+                             std::int64_t& rays) const {
+  const DirectParts parts = direct_parts(point, sampler, true, rays);
+  return parts.sun + parts.local + parts.met;
 }
 
 glm::vec3 PathTracer::indirect(const SurfacePoint& point, const Sampler& sampler,
@@ -177,7 +200,7 @@ bool PathTracer::arrive(Path& path, int depth) const {
   const Bounce& bounce = path.bounce_;
   path.throughput_ *= bounce.tint;
   // The emission that the first ray meets is direct light.
-  if (depth > 0) path.light += path.throughput_ * weighted_emission(bounce);
+  (depth > 0 ? path.light : path.met) += path.throughput_ * weighted_emission(bounce);
   if (!bounce.hit) return false;
   const auto [point, texel] = world_.surfaces.bounce_point(bounce.ray, *bounce.hit);
   path.at = point;
@@ -190,7 +213,8 @@ bool PathTracer::reflect(Path& path, int depth, std::int64_t& rays) const {
   if (path.texel_ != nullptr) path.at.albedo *= TexturePyramid::color(*path.texel_);
   glm::vec3& throughput = path.throughput_;
   throughput *= path.at.albedo;
-  path.light += throughput * sample_lights(path.at, path.sampler, true, rays);
+  const glm::vec3 sun = sample_sun(path.at, path.sampler, true, rays);
+  path.light += throughput * (sun + sample_local(path.at, path.sampler, true, rays));
   if (depth == 0) return true;
   // Russian roulette starts at the second bounce.
   const float brightest = std::max({throughput.x, throughput.y, throughput.z});

@@ -34,6 +34,20 @@ class PathTracer {
   /// `bounces` in [1, 64]; with 1, indirect light has been reflected by one other surface.
   PathTracer(const World& world, int bounces) : world_(world), bounces_(bounces) {}
 
+  /// The parts of a sample of direct light. `sun` has hard edges, and noise nowhere but there.
+  /// `local` is from a point of a local light, `met` what a cosine-distributed ray met; together
+  /// they are what local lights and the sky give, soft, and as noisy as indirect light.
+  struct DirectParts {
+    glm::vec3 sun{0.0f}, local{0.0f}, met{0.0f};
+  };
+  /// One sample, whose parts add up to direct(). Without `sends_ray`, `met` is 0: the first ray of
+  /// a path of indirect light (Path::met) can stand for it.
+  [[nodiscard]] DirectParts direct_parts(const SurfacePoint& point, Sampler& sampler,
+                                         bool sends_ray, std::int64_t& rays) const;
+  /// DirectParts::sun alone.
+  [[nodiscard]] glm::vec3 sun_light(const SurfacePoint& point, Sampler& sampler,
+                                    std::int64_t& rays) const;
+
   /// One sample; NaN or Inf if the scene contains such values. Adds the number of traced rays to
   /// `rays`.
   [[nodiscard]] glm::vec3 direct(const SurfacePoint& point, Sampler& sampler,
@@ -50,12 +64,16 @@ class PathTracer {
   /// `light` of each path has the same bits as when it is traced alone.
   void indirect(std::span<Path> paths, std::int64_t& rays) const;
 
+  /// Whether a sun lights the point, as bit 0 of lit_by().
+  [[nodiscard]] bool sees_sun(const SurfacePoint& point, std::int64_t& rays) const;
   /// Bit 0 is set if a sun lights the point, bit 1 if a local light does. Each bit comes from one
   /// shadow ray to a fixed point of the light that random numbers of 1/2 select. The result has no
   /// noise, so neighboring points can be compared.
   [[nodiscard]] std::uint8_t lit_by(const SurfacePoint& point, std::int64_t& rays) const;
 
  private:
+  [[nodiscard]] bool reaches(const SurfacePoint& point, const std::optional<LightSample>& sample,
+                             std::int64_t& rays) const;
   struct Bounce {      // sample_ray() fills the ray, trace() the rest
     Ray ray;           // cosine-distributed
     float pdf = 0.0f;  // per steradian
@@ -63,8 +81,10 @@ class PathTracer {
     std::optional<QuadHit> hit;     // refers to a quad until resolve_hit()
     std::optional<ShapeHit> shape;  // excludes `hit`
   };
-  [[nodiscard]] glm::vec3 sample_lights(const SurfacePoint& point, Sampler& sampler, bool quick,
-                                        std::int64_t& rays) const;
+  [[nodiscard]] glm::vec3 sample_sun(const SurfacePoint& point, Sampler& sampler, bool quick,
+                                     std::int64_t& rays) const;
+  [[nodiscard]] glm::vec3 sample_local(const SurfacePoint& point, Sampler& sampler, bool quick,
+                                       std::int64_t& rays) const;
   struct ShadowRayOptions {
     float weight_against = 0.0f;  // 1: cosine-distributed rays find the light too; 0: they do not
     bool quick = false;           // Ray::quick
@@ -93,13 +113,14 @@ struct PathTracer::Path {
   void start(const SurfacePoint& point, const Sampler& s) {
     at = point;
     sampler = s;
-    light = glm::vec3(0.0f);
+    light = met = glm::vec3(0.0f);
     throughput_ = glm::vec3(1.0f);
   }
 
   SurfacePoint at;
   Sampler sampler;
   glm::vec3 light{0.0f};  ///< the result
+  glm::vec3 met{0.0f};    ///< DirectParts::met, by the first ray of the path
 
  private:
   friend class PathTracer;

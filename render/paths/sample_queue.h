@@ -17,15 +17,21 @@ class SampleQueue {
   SampleQueue(const PathTracer& tracer, RayCounters& counters)
       : tracer_(tracer), counters_(counters) {}
 
-  /// `mean` must stay at its address until flush().
-  void add(const SurfacePoint& point, const Sampler& sampler, FiniteMean& mean) {
+  /// `mean` of Path::light, and `met` of Path::met if it is not null, must stay at their addresses
+  /// until flush().
+  void add(const SurfacePoint& point, const Sampler& sampler, FiniteMean& mean,
+           FiniteMean* met = nullptr) {
     paths_[size_].start(point, sampler);
     means_[size_] = &mean;
+    met_[size_] = met;
     if (++size_ == paths_.size()) flush();
   }
   void flush() {
     tracer_.indirect(std::span(paths_).first(size_), counters_.rays);
-    for (std::size_t i = 0; i < size_; ++i) means_[i]->add(paths_[i].light, counters_);
+    for (std::size_t i = 0; i < size_; ++i) {
+      means_[i]->add(paths_[i].light, counters_);
+      if (met_[i] != nullptr) met_[i]->add(paths_[i].met, counters_);
+    }
     size_ = 0;
   }
 
@@ -33,7 +39,7 @@ class SampleQueue {
   const PathTracer& tracer_;
   RayCounters& counters_;
   std::array<PathTracer::Path, PathTracer::kSideBySide> paths_;
-  std::array<FiniteMean*, PathTracer::kSideBySide> means_{};
+  std::array<FiniteMean*, PathTracer::kSideBySide> means_{}, met_{};
   std::size_t size_ = 0;
 };
 
