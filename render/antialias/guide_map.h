@@ -16,6 +16,7 @@ struct GuideMap {
   const Frame& frame;
   const Plane<GuideHit>& hits;
   const Planes<3>& indirect;  ///< denoised, divided by albedo
+  const Planes<3>& direct;    ///< the same: that of the frame, or denoised
 
   [[nodiscard]] bool is_surface(int x, int y) const {
     return frame.extent().contains(x, y) && hits(x, y).kind == GuideHit::Kind::kSurface;
@@ -26,7 +27,7 @@ struct GuideMap {
   }
   [[nodiscard]] glm::vec3 indirect_light(int x, int y) const { return load_pixel(indirect, x, y); }
   [[nodiscard]] glm::vec3 light(int x, int y) const {
-    return load_pixel(frame.direct, x, y) + indirect_light(x, y);
+    return load_pixel(direct, x, y) + indirect_light(x, y);
   }
   /// Radiance along the guide ray: albedo * light + emission.
   [[nodiscard]] glm::vec3 color(int x, int y) const {

@@ -44,13 +44,15 @@ Candidate compare(const GuideMap& guides, const EyePoint& eye, glm::ivec2 at) {
 
 }  // namespace
 
-std::optional<glm::ivec2> most_similar_guide(const GuideMap& guides, const EyePoint& eye) {
+std::optional<glm::ivec2> most_similar_guide(const GuideMap& guides, const EyePoint& eye,
+                                             const SeenAlike* seen) {
   const glm::ivec2 corner(glm::floor(eye.pixel - 0.5f));
   Candidates candidates;
   for (int i = 0; i < 4; ++i) {
     const glm::ivec2 at = corner + glm::ivec2(i % 2, i / 2);
     if (!guides.is_surface(at.x, at.y)) continue;
     if (!is_finite(guides.indirect_light(at.x, at.y))) continue;
+    if (seen && seen->values(at.x, at.y) != seen->value) continue;
     candidates.add(compare(guides, eye, at));
   }
   std::optional<glm::ivec2> best;

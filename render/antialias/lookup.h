@@ -15,8 +15,14 @@ namespace eigenlight {
 ///
 /// Guide rays outside the image, without a reflecting surface, or with non-finite indirect light
 /// are not candidates and do not enter the maxima. Returns nullopt if there is no candidate: case
-/// (b) of the paper without any valid estimate.
+/// (b) of the paper without any valid estimate. With `seen`, neither are guide rays whose `values`
+/// differ from `value`: points in the shadow for one in the sun.
+struct SeenAlike {
+  const Plane<std::uint8_t>& values;
+  std::uint8_t value;
+};
 [[nodiscard]] std::optional<glm::ivec2> most_similar_guide(const GuideMap& guides,
-                                                           const EyePoint& eye);
+                                                           const EyePoint& eye,
+                                                           const SeenAlike* seen = nullptr);
 
 }  // namespace eigenlight

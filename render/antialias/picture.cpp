@@ -23,6 +23,9 @@ constexpr int kTileSide = 16;  // the same as in live_source.cpp
 constexpr std::array<glm::vec2, 4> kRotatedGrid{
     {{0.1f, 0.7f}, {0.3f, 0.1f}, {0.7f, 0.9f}, {0.9f, 0.3f}}};
 
+// Samples of the sun at a point without a guide ray on its side of the shadow's edge.
+constexpr std::uint32_t kSunSamples = 4;
+
 // LiveSource draws its samples from streams 0 and 1.
 constexpr std::uint32_t kPlaceStream = 2;
 constexpr std::uint32_t kIndirectStream = 3;
@@ -72,6 +75,7 @@ class PixelRays {
   }
   [[nodiscard]] glm::vec3 direct(const EyeRay& ray, int samples);
   [[nodiscard]] glm::vec3 indirect(const EyeRay& ray);
+  [[nodiscard]] glm::vec3 sun(const EyeRay& ray);
   [[nodiscard]] glm::vec3 looked_up();
   [[nodiscard]] glm::vec3 reconstructed(AntialiasMode mode);
   [[nodiscard]] glm::vec3 supersampled(int samples);
@@ -118,12 +122,33 @@ glm::vec3 PixelRays::mean_of_grid(const LightAt& light_at) {
   return mean.value();
 }
 
+// Light of suns at an eye ray, without noise: that of a guide ray on its side of the shadow's edge.
+glm::vec3 PixelRays::sun(const EyeRay& ray) {
+  std::int64_t& rays = tally_.counters.rays;
+  const std::uint8_t seen = in_.tracer.sees_sun(ray.hit.guide.point, rays) ? 1 : 0;
+  const SeenAlike alike{lit_, seen};
+  const auto guide =
+      most_similar_guide(in_.guides, {ray.pixel, ray.hit.depth, ray.hit.normal}, &alike);
+  if (guide) return load_pixel(*in_.sun, guide->x, guide->y);
+  FiniteMean mean;
+  for (std::uint32_t i = 0; i < kSunSamples; ++i) {
+    Sampler sampler(key(kDirectStream, ray.index), i);
+    mean.add(in_.tracer.sun_light(ray.hit.guide.point, sampler, rays), tally_.counters);
+  }
+  return mean.value();
+}
+
 glm::vec3 PixelRays::looked_up() {
   // Four rays with a quarter of the samples have at most the noise of the guide ray.
   const int samples = (in_.direct_spp + 3) / 4;
   return mean_of_grid([&](const EyeRay& ray) {
     const auto guide = most_similar_guide(in_.guides, {ray.pixel, ray.hit.depth, ray.hit.normal});
     if (!guide) ++tally_.unmatched;
+    if (guide && in_.sun) {
+      const glm::vec3 soft = load_pixel(in_.guides.direct, guide->x, guide->y) -
+                             load_pixel(*in_.sun, guide->x, guide->y);
+      return soft + sun(ray) + in_.guides.indirect_light(guide->x, guide->y);
+    }
     return direct(ray, samples) +
            (guide ? in_.guides.indirect_light(guide->x, guide->y) : indirect(ray));
   });
@@ -154,16 +179,19 @@ glm::vec3 PixelRays::supersampled(int samples) {
   return mean.value();
 }
 
-// Stores PathTracer::lit_by() of all guide rays; returns the number of rays traced.
-std::int64_t judge_shadows(const PictureInputs& in, const TileGrid& grid,
+// Stores PathTracer::lit_by() of all guide rays, or of suns alone; returns the number of rays
+// traced.
+std::int64_t judge_shadows(const PictureInputs& in, const TileGrid& grid, bool only_suns,
                            Plane<std::uint8_t>& lit) {
   std::vector<std::int64_t> rays(static_cast<std::size_t>(grid.count()));
   for_each_tile(grid, [&](const Tile& tile) {
     for (int y = tile.y0; y < tile.y1; ++y) {
       for (int x = tile.x0; x < tile.x1; ++x) {
         if (!in.guides.is_surface(x, y)) continue;
-        lit(x, y) = in.tracer.lit_by(in.guides.hits(x, y).point,
-                                     rays[static_cast<std::size_t>(tile.index)]);
+        const SurfacePoint& point = in.guides.hits(x, y).point;
+        std::int64_t& count = rays[static_cast<std::size_t>(tile.index)];
+        lit(x, y) = only_suns ? std::uint8_t{in.tracer.sees_sun(point, count)}
+                              : in.tracer.lit_by(point, count);
       }
     }
   });
@@ -174,8 +202,9 @@ std::int64_t judge_shadows(const PictureInputs& in, const TileGrid& grid,
 
 void check(const AntialiasOptions& options, const GuideMap& guides) {
   const Extent extent = guides.frame.extent();
-  EL_CHECK(guides.indirect[0].extent() == extent && guides.hits.extent() == extent,
-           "indirect light, guide rays and frame: expected one size");
+  EL_CHECK(guides.indirect[0].extent() == extent && guides.direct[0].extent() == extent &&
+               guides.hits.extent() == extent,
+           "light, guide rays and frame: expected one size");
   EL_CHECK(options.mode != AntialiasMode::kNone,
            "aa none: expected a mode that renders a picture of its own");
   const bool counts = options.mode == AntialiasMode::kSupersample;
@@ -193,7 +222,10 @@ PictureStats render_picture(const AntialiasOptions& options, const PictureInputs
   const TileGrid grid(extent, kTileSide, kTileSide);
   PictureStats stats;
   Plane<std::uint8_t> lit(extent);
-  if (options.mode == AntialiasMode::kSraa) stats.rays += judge_shadows(in, grid, lit);
+  const bool looks_up = options.mode == AntialiasMode::kLookup && in.sun;
+  if (looks_up || options.mode == AntialiasMode::kSraa) {
+    stats.rays += judge_shadows(in, grid, looks_up, lit);
+  }
   std::vector<Tally> tallies(static_cast<std::size_t>(grid.count()));
   for_each_tile(grid, [&](const Tile& tile) {
     Tally& tally = tallies[static_cast<std::size_t>(tile.index)];

@@ -36,7 +36,7 @@ struct GuideFrame {
       for (int x = 0; x < hits.width(); ++x) set(x, y, point);
     }
   }
-  [[nodiscard]] GuideMap map() const { return {frame, hits, indirect}; }
+  [[nodiscard]] GuideMap map() const { return {frame, hits, indirect, frame.direct}; }
 
   Frame frame;
   Plane<GuideHit> hits;

@@ -50,6 +50,23 @@ TEST(Lookup, LookupPrefersTheSameSurface) {
   EXPECT_EQ(most_similar_guide(guides.map(), {{1.9f, 1.5f}, 1.4f, {-0.8f, 0, -0.6f}})->x, 2);
 }
 
+// Whatever else is alike: an eye ray in the sun takes its light from a guide ray in the sun.
+TEST(Lookup, LookupStaysOnItsSideOfAShadowsEdge) {
+  GuideFrame guides({4, 4});
+  guides.set_all({});
+  Plane<std::uint8_t> sees_sun({4, 4});
+  for (int y = 0; y < 4; ++y) sees_sun(2, y) = sees_sun(3, y) = 1;
+  const auto column = [&](float x, std::uint8_t seen) {
+    const SeenAlike alike{sees_sun, seen};
+    return most_similar_guide(guides.map(), {{x, 1.5f}, 1.0f, {0, 0, -1}}, &alike);
+  };
+  EXPECT_EQ(column(1.9f, 1)->x, 2);
+  EXPECT_EQ(column(1.9f, 0)->x, 1);
+  EXPECT_EQ(column(2.1f, 0)->x, 1);
+  EXPECT_EQ(column(2.1f, 1)->x, 2);
+  EXPECT_FALSE(column(3.2f, 0));
+}
+
 TEST(Lookup, NearestPixelBreaksTies) {
   GuideFrame guides({4, 4});
   guides.set_all({});
