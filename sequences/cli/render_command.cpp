@@ -37,10 +37,12 @@ class RenderRun {
 
  private:
   [[nodiscard]] Scene load() const;
+  [[nodiscard]] RunHistory history() const { return {*denoiser_, direct_.get()}; }
   void say_what_comes(const FrameWriter& writer) const;
   // Renders frames from `position_` on, until the last one or an interrupt.
   void render(const Animation& animation, const Scene& scene, FrameWriter& writer);
-  // Antialiases the frame that the denoiser pulled last, if the picture is written, and writes it.
+  // Denoises direct light, antialiases the frame that the denoiser pulled last, if the picture is
+  // written, and writes it.
   FrameOutput write_frame(LiveSource& source, const Planes<3>& indirect, FrameWriter& writer);
   int stopped() const;
   int finished() const;
@@ -49,6 +51,7 @@ class RenderRun {
   const Job& job_;
   RenderPlan plan_;
   std::unique_ptr<Denoiser> denoiser_;
+  std::unique_ptr<DirectDenoiser> direct_;  // null: direct light stays noisy
   std::unique_ptr<RunDirectory> directory_;
   std::size_t position_ = 0;  // frames that are complete
   Planes<3> picture_;
@@ -79,11 +82,15 @@ int RenderRun::run() {
   denoiser_ = make_denoiser(
       plan_.denoiser,
       {.extent = plan_.render.extent, .bases = plan_.bases, .without = plan_.without});
+  if (plan_.denoises_direct) {
+    direct_ = std::make_unique<DirectDenoiser>(
+        DenoiserOptions{.extent = plan_.render.extent, .bases = plan_.bases});
+  }
   directory_ = std::make_unique<RunDirectory>(settings_.directory, to_json_text(description));
   const std::string foreign = directory_->foreign_frames(plan_.frames);
   if (!foreign.empty()) job_.say_notes({foreign});
   if (settings_.resume) {
-    position_ = directory_->resume(plan_.frames, *denoiser_);
+    position_ = directory_->resume(plan_.frames, history());
   } else {
     directory_->begin();
   }
@@ -108,10 +115,10 @@ void RenderRun::render(const Animation& animation, const Scene& scene, FrameWrit
     totals_.add(denoiser_->report(), output);
     progress.frame_done(plan_.frames[position_]);
     if (Clock::now() - saved < kCheckpointInterval) continue;
-    directory_->save(position_ + 1, *denoiser_);
+    directory_->save(position_ + 1, history());
     saved = Clock::now();
   }
-  directory_->save(position_, *denoiser_);
+  directory_->save(position_, history());
   totals_.seconds = std::chrono::duration<double>(Clock::now() - start).count();
 }
 
@@ -120,13 +127,19 @@ FrameOutput RenderRun::write_frame(LiveSource& source, const Planes<3>& indirect
   FrameOutput output;
   StageClock clock;
   const Frame& frame = denoiser_->frame();
+  if (direct_) {
+    direct_->step(frame, source.sun(), source.soft());
+    output.direct = clock.lap();
+  }
   const bool antialiases = plan_.antialias.mode != AntialiasMode::kNone &&
                            std::count(plan_.layers.begin(), plan_.layers.end(), Layer::kColor) > 0;
   if (antialiases) {
-    output.picture = source.picture(plan_.antialias, frame, indirect, picture_);
+    output.picture = source.picture(plan_.antialias, frame, indirect, picture_,
+                                    direct_ ? &direct_->output() : nullptr);
     output.antialias = clock.lap();
   }
-  writer.write({frame, indirect, denoiser_->age(), antialiases ? &picture_ : nullptr});
+  writer.write({frame, indirect, denoiser_->age(), antialiases ? &picture_ : nullptr,
+                direct_ ? &direct_->output() : nullptr});
   output.write = clock.lap();
   return output;
 }
@@ -158,6 +171,9 @@ void add_picture_options(CLI::App& command, RenderSettings& settings) {
   command.add_option(
       "--spp", settings.spp,
       fmt::format("Samples of indirect light per pixel [3; reference: {}]", kReferenceSpp));
+  command.add_option("--direct-spp", settings.direct_spp,
+                     fmt::format("Samples of direct light per pixel [{}; reference: {}]",
+                                 RenderOptions{}.direct_spp, kReferenceDirectSpp));
   command.add_option("--bounces", settings.bounces, "Bounces of indirect light")
       ->capture_default_str();
   command.add_option("--seed", settings.seed, "Seed of the noise")->capture_default_str();
@@ -177,6 +193,10 @@ void add_run_options(CLI::App& command, RenderSettings& settings) {
                      "Comma-separated parts of the method to turn off; see `eigenlight methods "
                      "--parts`");
   command.add_option("--bases", settings.bases, "Bases per pixel, 1 to 8")->capture_default_str();
+  command
+      .add_option("--direct", settings.direct,
+                  "Direct light in the picture: denoised, or noisy as it is sampled")
+      ->capture_default_str();
   command
       .add_option("--aa", settings.antialias,
                   "Antialiasing of the layer color: none, lookup, sraa, sraa-geometry or "

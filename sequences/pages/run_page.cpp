@@ -121,6 +121,7 @@ PageTable run_table(const RunRecords& records) {
   std::vector<std::pair<std::string, std::string>> facts{{"scene", text("/scene")},
                                                          {"perturbation", text("/perturb")},
                                                          {"method", text("/method")},
+                                                         {"direct light", text("/direct")},
                                                          {"antialiasing", text("/antialias")}};
   const auto add = [&](const char* name, std::string value) {
     facts.emplace_back(name, std::move(value));
@@ -171,7 +172,7 @@ Page run_page(const std::filesystem::path& dir) {
   Page page;
   page.title =
       fmt::format("{}: {}", title.empty() ? scene : title, records.run.get<std::string>("/method"));
-  page.subtitle = "Eigenlight: temporal denoising of path-traced indirect light";
+  page.subtitle = "Eigenlight: temporal denoising of path-traced light";
   for (const StageTimes& stage : stages) page.names.push_back(stage.name);
   page.background = background_of(stages);
   PageSection summary{"Summary", "", {}, {}, {}};

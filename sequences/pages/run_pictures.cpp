@@ -14,17 +14,28 @@ namespace fs = std::filesystem;
 // The kinds of pictures that a file can hold.
 enum Kind : std::size_t { kFull, kIndirect };
 
-// The full picture with the noisy indirect light of the frame: color - indirect + noisy.
-Planes<3> noisy_color(const Planes<3>& color, const Planes<3>& indirect, const Planes<3>& noisy) {
-  Planes<3> out = make_planes<3>(color[0].extent());
+void add(const Planes<3>& light, float factor, Planes<3>& sum) {
   for (std::size_t c = 0; c < 3; ++c) {
-    for (int y = 0; y < out[c].height(); ++y) {
-      for (int x = 0; x < out[c].width(); ++x) {
-        out[c](x, y) = color[c](x, y) - indirect[c](x, y) + noisy[c](x, y);
-      }
+    for (int y = 0; y < sum[c].height(); ++y) {
+      for (int x = 0; x < sum[c].width(); ++x) sum[c](x, y) += factor * light[c](x, y);
     }
   }
-  return out;
+}
+
+// The full picture as the frame's own samples have it: their sum where all are there, else the
+// picture with noisy indirect light in place of what is denoised.
+Planes<3> noisy_color(const ExrReader& reader) {
+  const char* direct = reader.has_layer("noisy_direct") ? "noisy_direct" : "direct";
+  if (reader.has_layer(direct) && reader.has_layer("emission")) {
+    Planes<3> sum = reader.read_planes<3>("noisy");
+    add(reader.read_planes<3>(direct), 1.0f, sum);
+    add(reader.read_planes<3>("emission"), 1.0f, sum);
+    return sum;
+  }
+  Planes<3> sum = reader.read_planes<3>("");
+  add(reader.read_planes<3>("indirect"), -1.0f, sum);
+  add(reader.read_planes<3>("noisy"), 1.0f, sum);
+  return sum;
 }
 
 std::vector<SplitView> read_views(const fs::path& path) {
@@ -33,11 +44,8 @@ std::vector<SplitView> read_views(const fs::path& path) {
   const bool has_noisy = reader.has_layer("noisy") && reader.has_layer("indirect");
   std::vector<SplitView> views;
   if (reader.has_layer("")) {
-    Planes<3> color = read("");
-    if (has_noisy) {
-      views.push_back({kFull, false, noisy_color(color, read("indirect"), read("noisy"))});
-    }
-    views.push_back({kFull, true, std::move(color)});
+    if (has_noisy) views.push_back({kFull, false, noisy_color(reader)});
+    views.push_back({kFull, true, read("")});
   }
   if (reader.has_layer("indirect")) {
     if (has_noisy) views.push_back({kIndirect, false, read("noisy")});

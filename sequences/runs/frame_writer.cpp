@@ -11,10 +11,12 @@
 namespace eigenlight {
 namespace {
 
-constexpr std::array<std::string_view, 12> kLayerNames{"color",    "indirect", "noisy", "direct",
-                                                       "emission", "albedo",   "N",     "Z",
-                                                       "P",        "motion",   "id",    "age"};
+constexpr std::array<std::string_view, 13> kLayerNames{
+    "color", "indirect", "noisy", "direct", "noisy_direct", "emission", "albedo",
+    "N",     "Z",        "P",     "motion", "id",           "age"};
 constexpr float kLargestHalf = 65504.0f;
+
+std::string_view name_of(Layer layer) { return kLayerNames[static_cast<std::size_t>(layer)]; }
 
 [[nodiscard]] bool exceeds_half(const Plane<float>& plane) {
   for (int y = 0; y < plane.height(); ++y) {
@@ -50,7 +52,7 @@ std::vector<Layer> parse_layers(std::string_view text) {
 
 std::string format_layers(const std::vector<Layer>& layers) {
   std::vector<std::string_view> names;
-  for (const Layer layer : layers) names.push_back(kLayerNames[static_cast<std::size_t>(layer)]);
+  for (const Layer layer : layers) names.push_back(name_of(layer));
   return fmt::format("{}", fmt::join(names, ","));
 }
 
@@ -112,11 +114,12 @@ void FrameWriter::add_planes(std::string_view layer, std::string_view axes,
 void FrameWriter::add(Layer layer, const DenoisedFrame& denoised) {
   const Frame& frame = denoised.frame;
   const Planes<3>& albedo = frame.surface.albedo;
+  const Planes<3>& direct = denoised.direct ? *denoised.direct : frame.direct;
   Planes<3>& scratch = scratch_[used_scratch_++];
   switch (layer) {
     case Layer::kColor:
       if (denoised.picture) return add_planes("", "RGB", denoised.picture->data(), false);
-      compose(frame, denoised.indirect, scratch);
+      compose(frame, denoised.indirect, direct, scratch);
       return add_planes("", "RGB", scratch.data(), false);
     case Layer::kIndirect:
       modulate(albedo, denoised.indirect, scratch);
@@ -125,8 +128,9 @@ void FrameWriter::add(Layer layer, const DenoisedFrame& denoised) {
       modulate(albedo, frame.lights[0].radiance, scratch);
       return add_planes("noisy", "RGB", scratch.data(), false);
     case Layer::kDirect:
-      modulate(albedo, frame.direct, scratch);
-      return add_planes("direct", "RGB", scratch.data(), false);
+    case Layer::kNoisyDirect:
+      modulate(albedo, layer == Layer::kDirect ? direct : frame.direct, scratch);
+      return add_planes(name_of(layer), "RGB", scratch.data(), false);
     case Layer::kEmission:
       return add_planes("emission", "RGB", frame.emission.data(), false);
     case Layer::kAlbedo:

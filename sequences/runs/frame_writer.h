@@ -14,11 +14,12 @@
 namespace eigenlight {
 
 /// The layers of a frame file. All radiance is linear Rec. 709 and not clamped.
-///   color     R,G,B        albedo * (direct + denoised indirect) + emission, or its antialiased
-///                          picture; the unnamed layer
+///   color     R,G,B        albedo * (direct + indirect) + emission, or its antialiased picture;
+///                          the unnamed layer
 ///   indirect  R,G,B        albedo * denoised indirect
 ///   noisy     R,G,B        albedo * raw indirect of the frame's own samples, NaN and Inf kept
-///   direct    R,G,B        albedo * direct
+///   direct    R,G,B        albedo * direct, denoised unless the run keeps it noisy
+///   noisy_direct R,G,B     albedo * raw direct of the frame's own samples
 ///   emission  R,G,B        of the first hit, or of the sky
 ///   albedo    R,G,B
 ///   N         X,Y,Z        world space
@@ -34,6 +35,7 @@ enum class Layer {
   kIndirect,
   kNoisy,
   kDirect,
+  kNoisyDirect,
   kEmission,
   kAlbedo,
   kNormal,
@@ -61,6 +63,7 @@ struct DenoisedFrame {
   const Planes<3>& indirect;  ///< denoised, over albedo
   const Plane<float>& age;
   const Planes<3>* picture = nullptr;  ///< the layer color; null: composed from the others
+  const Planes<3>* direct = nullptr;   ///< denoised, over albedo; null: that of the frame
 };
 
 /// Writes frames into a directory. Radiance, albedo, N and age are half; Z, P and motion are float;

@@ -20,13 +20,18 @@ namespace {
 constexpr std::int64_t kSeeds = std::int64_t{1} << 31;
 constexpr std::uint32_t kReferenceSeeds = 0x80000000U;
 
-// Samples of direct light (a third of the rays of a run at 3 spp): 0 unless a layer shows it.
-int direct_samples(const std::vector<Layer>& layers, bool is_reference, int usual) {
-  const bool shown = std::any_of(layers.begin(), layers.end(), [](Layer layer) {
-    return layer == Layer::kColor || layer == Layer::kDirect;
+bool shows_direct(const std::vector<Layer>& layers) {
+  return std::any_of(layers.begin(), layers.end(), [](Layer layer) {
+    return layer == Layer::kColor || layer == Layer::kDirect || layer == Layer::kNoisyDirect;
   });
-  if (!shown) return 0;
-  return is_reference ? kReferenceDirectSpp : usual;
+}
+
+// Denoised unless it is not asked for: raw samples alone need no history.
+bool denoises_direct(const RenderSettings& settings, const RenderPlan& plan) {
+  const bool denoised = settings.direct == "denoised";
+  EL_CHECK(denoised || settings.direct == "noisy", "direct '{}': expected denoised or noisy",
+           settings.direct);
+  return denoised && plan.denoiser != "noisy" && plan.render.direct_spp > 0;
 }
 
 // Without this check the kernel might kill the process. Two frames, output and the encoded file
@@ -89,7 +94,11 @@ RenderPlan make_plan(const RenderSettings& settings) {
   render.extent = parse_size(settings.size);
   check_memory(render.extent, plan.bases);
   render.spp = settings.spp.value_or(is_reference ? kReferenceSpp : render.spp);
-  render.direct_spp = direct_samples(plan.layers, is_reference, render.direct_spp);
+  const int direct_spp =
+      settings.direct_spp.value_or(is_reference ? kReferenceDirectSpp : render.direct_spp);
+  check_range("direct-spp", direct_spp, 1, 65536);
+  render.direct_spp = shows_direct(plan.layers) ? direct_spp : 0;
+  plan.denoises_direct = denoises_direct(settings, plan);
   render.bounces = settings.bounces;
   render.seed = static_cast<std::uint32_t>(settings.seed) | (is_reference ? kReferenceSeeds : 0U);
   check_range("spp", render.spp, 1, 65536);

@@ -16,7 +16,7 @@ inline constexpr std::string_view kDefaultMethod = "eigenlight";
 /// The method that renders references: many samples, no denoising, and seeds that no other run has.
 inline constexpr std::string_view kReferenceMethod = "reference";
 inline constexpr int kReferenceSpp = 512;
-/// Of direct light, which has far less noise: eight times the default.
+/// Of direct light, which has far less noise.
 inline constexpr int kReferenceDirectSpp = 64;
 
 /// Options as a user gives them.
@@ -25,14 +25,16 @@ struct RenderSettings {
   std::string directory;
   std::string frames = "0-47";
   std::string size = "640x360";
-  std::optional<int> spp;  ///< 3, or kReferenceSpp for `reference`
+  std::optional<int> spp;           ///< 3, or kReferenceSpp for `reference`
+  std::optional<int> direct_spp;    ///< that of RenderOptions, or kReferenceDirectSpp
+  std::string direct = "denoised";  ///< or `noisy`
   std::string method{kDefaultMethod};
   std::string without;  ///< comma-separated parts of the method to turn off; empty: none
   int bases = 3;
   std::int64_t seed = 0;
   int bounces = 3;
   std::string perturb = "none";
-  std::string antialias = "none";
+  std::string antialias = "lookup";
   std::string layers;  ///< empty: all
   bool environment = false;
   bool resume = false;
@@ -46,6 +48,8 @@ struct RenderPlan {
   std::string denoiser;  ///< name of the denoiser: `noisy` for `reference`
   std::vector<std::string> without;
   int bases = 3;
+  /// Direct light is denoised too: where it is shown, unless the method leaves all light noisy.
+  bool denoises_direct = false;
   Perturbation perturbation = Perturbation::kNone;
   std::string perturb;
   AntialiasOptions antialias;

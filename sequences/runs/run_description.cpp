@@ -49,6 +49,7 @@ RunDescription describe_run(const RenderSettings& settings, const RenderPlan& pl
   run.bases = plan.bases;
   run.seed = plan.render.seed;
   run.perturb = plan.perturb;
+  run.direct = plan.denoises_direct ? "denoised" : "noisy";
   run.antialias = format_antialias(plan.antialias);
   run.layers = format_layers(plan.layers);
   run.exposure = scene.exposure;
@@ -73,6 +74,7 @@ std::string to_json_text(const RunDescription& run) {
                   {"bases", run.bases},
                   {"seed", run.seed},
                   {"perturb", run.perturb},
+                  {"direct", run.direct},
                   {"antialias", run.antialias},
                   {"layers", run.layers},
                   {"exposure", run.exposure},
@@ -85,7 +87,8 @@ std::vector<ExrAttribute> file_attributes(const RunDescription& run) {
           {"eigenlight.method", run.method},    {"eigenlight.without", run.without},
           {"eigenlight.bases", run.bases},      {"eigenlight.spp", run.spp},
           {"eigenlight.bounces", run.bounces},  {"eigenlight.seed", fmt::format("{}", run.seed)},
-          {kPerturbAttribute, run.perturb},     {"eigenlight.antialias", run.antialias},
+          {kPerturbAttribute, run.perturb},     {"eigenlight.direct_spp", run.direct_spp},
+          {"eigenlight.direct", run.direct},    {"eigenlight.antialias", run.antialias},
           {"eigenlight.exposure", run.exposure}};
 }
 

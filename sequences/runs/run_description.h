@@ -26,6 +26,7 @@ struct RunDescription {
   int bases = 0;
   std::uint32_t seed = 0;
   std::string perturb;
+  std::string direct = "denoised";
   std::string antialias = "none";
   std::string layers;
   float exposure = 1.0f;

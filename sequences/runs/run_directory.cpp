@@ -61,7 +61,7 @@ void RunDirectory::check_same_run(const std::filesystem::path& file,
   }
 }
 
-std::size_t RunDirectory::resume(const std::vector<int>& frames, Denoiser& denoiser) const {
+std::size_t RunDirectory::resume(const std::vector<int>& frames, const RunHistory& history) const {
   const std::filesystem::path state = path_ / kCheckpointFile;
   if (!std::filesystem::exists(state)) {
     const std::filesystem::path run = path_ / kRunFile;
@@ -80,14 +80,18 @@ std::size_t RunDirectory::resume(const std::vector<int>& frames, Denoiser& denoi
     const std::filesystem::path file = path_ / pattern.name(frames[i]);
     check_complete(state, frames[i], {&file, 1});
   }
-  restore_state(state, checkpoint, [&](StateReader& reader) { denoiser.load(reader); });
+  restore_state(state, checkpoint, [&](StateReader& reader) {
+    history.indirect.load(reader);
+    if (history.direct) history.direct->load(reader);
+  });
   write_file_atomically(path_ / kRunFile, run_);
   return checkpoint.position;
 }
 
-void RunDirectory::save(std::size_t position, const Denoiser& denoiser) const {
+void RunDirectory::save(std::size_t position, const RunHistory& history) const {
   StateWriter state;
-  denoiser.save(state);
+  history.indirect.save(state);
+  if (history.direct) history.direct->save(state);
   write_checkpoint(path_ / kCheckpointFile, {run_, position, state.bytes()});
 }
 

@@ -8,8 +8,15 @@
 
 #include "sequences/files/directory.h"
 #include "temporal/denoiser.h"
+#include "temporal/eigen/direct_denoiser.h"
 
 namespace eigenlight {
+
+/// What a run has of history: its denoisers. `direct` is null where direct light stays noisy.
+struct RunHistory {
+  Denoiser& indirect;
+  DirectDenoiser* direct = nullptr;
+};
 
 /// Holds frame.####.exr, frames.jsonl, run.json, index.html, and state.bin, the checkpoint that
 /// `--resume` starts from.
@@ -29,14 +36,14 @@ class RunDirectory {
   /// older run stay until frames of this run overwrite them.
   void begin() const;
 
-  /// Resumes the run from its checkpoint: loads `denoiser` and returns how many of `frames` are
+  /// Resumes the run from its checkpoint: loads `history` and returns how many of `frames` are
   /// complete. Without a checkpoint, and with run.json missing or of this run, it calls begin() and
   /// returns 0. Throws CheckpointError if the checkpoint is damaged, of another version or of
   /// another run, or if a frame that it counts as complete is missing.
-  [[nodiscard]] std::size_t resume(const std::vector<int>& frames, Denoiser& denoiser) const;
+  [[nodiscard]] std::size_t resume(const std::vector<int>& frames, const RunHistory& history) const;
 
   /// Writes the checkpoint after `position` complete frames.
-  void save(std::size_t position, const Denoiser& denoiser) const;
+  void save(std::size_t position, const RunHistory& history) const;
 
  private:
   void check_same_run(const std::filesystem::path& file, const std::string& there) const;

@@ -43,6 +43,7 @@ Json stages_of(const FrameReport& report, const FrameOutput& output) {
   for (std::size_t s = 0; s < kStageNames.size(); ++s) {
     stages[std::string(kStageNames[s])] = to_json(report.time[s]);
   }
+  stages["direct"] = to_json(output.direct);
   stages["antialias"] = to_json(output.antialias);
   stages["write"] = to_json(output.write);
   return stages;

@@ -13,13 +13,15 @@ namespace eigenlight {
 /// Time and statistics of a frame after it was denoised.
 struct FrameOutput {
   StageTime write;
+  StageTime direct = {};  ///< direct light was denoised
   StageTime antialias = {};
   PictureStats picture = {};
 };
 
 /// One JSON object per frame, in the order of the run.
 ///   frame, cut   frame number; whether no history was taken over
-///   stages       {name: {wall_ms, cpu_ms}} of kStageNames, "antialias" and "write"
+///   stages       {name: {wall_ms, cpu_ms}} of kStageNames, "direct", "antialias" and
+///                "write"
 ///   antialias    {rays, unmatched, non_finite} of the picture: PictureStats
 ///   samples      of indirect light: spp * surface_pixels + extra_samples
 ///   new_share    new_pixels / surface_pixels; 0 without surface

@@ -15,6 +15,7 @@ void RunTotals::add(const FrameReport& report, const FrameOutput& output) {
   rays += report.rays;
   non_finite += report.non_finite_pixels + report.non_finite_samples + output.picture.non_finite;
   for (std::size_t s = 0; s < time.size(); ++s) time[s] += report.time[s];
+  direct += output.direct;
   antialias += output.antialias;
   write += output.write;
 }
@@ -36,6 +37,7 @@ std::string RunTotals::to_json(const std::filesystem::path& directory) const {
     mean[std::string(name)] = {{"wall", stage.wall_ms / n}, {"cpu", stage.cpu_ms / n}};
   };
   for (std::size_t s = 0; s < time.size(); ++s) add_mean(kStageNames[s], time[s]);
+  add_mean("direct", direct);
   add_mean("antialias", antialias);
   add_mean("write", write);
   const Json json{
@@ -46,7 +48,7 @@ std::string RunTotals::to_json(const std::filesystem::path& directory) const {
 
 std::string RunTotals::to_text(const std::filesystem::path& directory) const {
   const double n = static_cast<double>(std::max<std::size_t>(frames, 1));
-  StageTime all;
+  StageTime all = direct;
   for (const StageTime& stage : time) all += stage;
   const double render = render_ms(), denoise = all.wall_ms - render;
   const std::string smooth =

@@ -18,7 +18,7 @@ struct RunTotals {
   std::int64_t non_finite = 0;  ///< pixels and samples excluded
   double seconds = 0.0;
   std::array<StageTime, kStageNames.size()> time{};
-  StageTime write, antialias;
+  StageTime write, antialias, direct;
 
   void add(const FrameReport& report, const FrameOutput& output);
   /// Wall time of the stages that trace rays, source and resample.

@@ -19,7 +19,8 @@ struct FakeRun {
   std::string title = "A made-up room";
   Extent extent{96, 54};
   std::vector<int> frames{0};
-  std::string layers = {};  ///< empty: all
+  std::string layers = {};   ///< empty: all
+  bool has_picture = false;  ///< a gray picture in place of the composed color
 };
 
 /// A bright disc that moves over a wall, under a sky without surface; the noisy light varies by
@@ -87,10 +88,12 @@ inline void write_fake_run(const std::filesystem::path& dir, const FakeRun& run)
   frame.resize(run.extent);
   Planes<3> denoised = make_planes<3>(run.extent);
   Plane<float> age(run.extent);
+  Planes<3> picture = make_planes<3>(run.extent);
+  for (auto& plane : picture) plane.fill(0.5f);
   for (const int number : run.frames) {
     frame.index = number;
     fill_fake_frame(number, frame, denoised, age);
-    writer.write({frame, denoised, age});
+    writer.write({frame, denoised, age, run.has_picture ? &picture : nullptr});
     log.append(fake_report(number, run), description.spp, {2.0, 2.0});
   }
 }

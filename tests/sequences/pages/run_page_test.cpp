@@ -61,6 +61,16 @@ TEST(RunPage, ShowsPicturesOfAllKindsAndSides) {
   }
 }
 
+// It is the sum of what was sampled, however the picture beside it was antialiased.
+TEST(RunPage, TheNoisyPictureHoldsAllNoisyLight) {
+  const TempDir dir;
+  const auto noisy_picture = [&](const FakeRun& run) {
+    write_fake_run(dir.path(), run);
+    return run_pictures(dir.path(), {0}, {}).tiles.at(0).pictures.at(0).at(0);
+  };
+  EXPECT_EQ(noisy_picture({.has_picture = true}), noisy_picture({}));
+}
+
 TEST(RunPage, ShowsTheTimesOfAllStages) {
   const TempDir dir;
   write_fake_run(dir.path(), {.frames = first_frames(3)});

@@ -96,6 +96,23 @@ TEST(FrameWriter, PictureReplacesTheComposedColor) {
   EXPECT_GT(reader.read_planes<3>("direct")[0](20, 20), 0.0f);
 }
 
+TEST(FrameWriter, DenoisedDirectLightStandsBesideTheNoisy) {
+  const TempDir dir;
+  const Example example;
+  Planes<3> direct = make_planes<3>(example.frame.extent());
+  for (auto& plane : direct) plane.fill(2.0f);
+  FrameWriter all(dir.path(), parse_layers(""), {});
+  all.write({example.frame, example.indirect, example.age, nullptr, &direct});
+  const ExrReader reader(dir / "frame.0000.exr");
+  const auto shown = reader.read_planes<3>("direct"), noisy = reader.read_planes<3>("noisy_direct");
+  const auto color = reader.read_planes<3>(""), indirect = reader.read_planes<3>("indirect");
+  const float albedo = example.frame.surface.albedo[1](20, 20);
+  EXPECT_NEAR(shown[1](20, 20), 2.0f * albedo, 2e-3f);
+  EXPECT_NEAR(noisy[1](20, 20), example.frame.direct[1](20, 20) * albedo, 1e-3f);
+  const float emission = example.frame.emission[1](20, 20);
+  EXPECT_NEAR(color[1](20, 20), shown[1](20, 20) + indirect[1](20, 20) + emission, 4e-3f);
+}
+
 TEST(FrameWriter, ValuesBeyondHalfAreWrittenAsFloat) {
   const TempDir dir;
   Example example;

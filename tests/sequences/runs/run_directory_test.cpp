@@ -28,7 +28,7 @@ class RunDirectoryTest : public testing::Test {
   }
   std::string refusal(const std::string& run) {
     try {
-      (void)open(run).resume(kFrames, denoiser_);
+      (void)open(run).resume(kFrames, {denoiser_});
     } catch (const CheckpointError& error) {
       return error.what();
     }
@@ -52,12 +52,12 @@ TEST_F(RunDirectoryTest, ResumesAfterTheSavedFrame) {
   run.begin();
   pretend_frame(4);
   pretend_frame(5);
-  run.save(2, denoiser_);
-  EXPECT_EQ(run.resume(kFrames, denoiser_), 2u);
+  run.save(2, {denoiser_});
+  EXPECT_EQ(run.resume(kFrames, {denoiser_}), 2u);
   // Beginning anew forgets it.
   run.begin();
   EXPECT_FALSE(std::filesystem::exists(dir_ / "state.bin"));
-  EXPECT_EQ(run.resume(kFrames, denoiser_), 0u);
+  EXPECT_EQ(run.resume(kFrames, {denoiser_}), 0u);
 }
 
 TEST_F(RunDirectoryTest, TwoRunsDoNotWriteIntoOneDirectory) {
@@ -78,14 +78,14 @@ TEST_F(RunDirectoryTest, FramesOfAnotherRunAreTold) {
 
 TEST_F(RunDirectoryTest, CheckpointOfAnotherRunIsAnError) {
   const auto run = [&]() -> const RunDirectory& { return open(kRun); };
-  EXPECT_EQ(run().resume(kFrames, denoiser_), 0u);
+  EXPECT_EQ(run().resume(kFrames, {denoiser_}), 0u);
   const std::string other = R"({"scene": "atrium", "spp": 8})";
   EXPECT_THAT(refusal(other), HasSubstr("run.json: of another run: spp is 3 there, 8 here"));
-  run().save(0, denoiser_);
+  run().save(0, {denoiser_});
   EXPECT_THAT(refusal(other), HasSubstr("state.bin: of another run: spp is 3 there, 8 here"));
-  run().save(1, denoiser_);
+  run().save(1, {denoiser_});
   EXPECT_THAT(refusal(kRun), HasSubstr("frame.0004.exr is missing"));
-  run().save(4, denoiser_);
+  run().save(4, {denoiser_});
   EXPECT_THAT(refusal(kRun), HasSubstr("4 frames complete, but the run has 3"));
   std::string bytes = read_whole_file(dir_ / "state.bin");
   bytes.back() = static_cast<char>(bytes.back() ^ 1);
