@@ -128,7 +128,9 @@ ReferenceIdentity CompareJob::identity_of(const CompareCase& one, const OpenCase
   options.extent = plan_.extent;
   options.bounces = plan_.bounces;
   if (plan_.is_antialiasing()) identity.antialias = kAntialiasReference;
-  identity.renderer = renderer_hash(open.animated(), options, identity.antialias);
+  identity.is_whole = plan_.is_whole;
+  identity.renderer =
+      renderer_hash(open.animated(), options, identity.antialias, identity.is_whole);
   return identity;
 }
 

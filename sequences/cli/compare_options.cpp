@@ -44,6 +44,9 @@ void add_what(CLI::App& command, CompareSettings& settings) {
   command.add_option("--aa", settings.antialias,
                      "In place of methods: ways of antialiasing, with commas, as in `render --aa` "
                      "[--spp 24 --frames 20 --warmup 1 --reference-spp 512]");
+  command.add_option("--layer", settings.layer,
+                     "What is measured: indirect or color of scenes [indirect], any layer of "
+                     "recorded frames [beauty]");
   command.add_option("--spp", settings.spp, "Sample counts, with commas")->capture_default_str();
   command.add_flag("--environment", settings.environment,
                    "Environment map of a scene.json in place of its suns and sky");
@@ -79,11 +82,10 @@ void add_recorded(CLI::App& command, CompareSettings& settings) {
                      "Recorded frames: reference, shot.ref.####.exr; with :NAME the layers NAME.*");
   command.add_option("--reference-b", settings.reference_b,
                      "Recorded frames: second, independent reference");
-  command.add_option("--layer", settings.layer, "Recorded frames: layer to measure [beauty]");
   add_layer_options(command, settings.layers, settings.guides, settings.cuts);
 }
 
-constexpr std::array kOfRecorded{"--reference", "--reference-b", "--layer",  "--map", "--keep",
+constexpr std::array kOfRecorded{"--reference", "--reference-b", "--map",    "--keep",
                                  "--skip",      "--motion",      "--camera", "--cuts"};
 constexpr std::array kOfScenes{"--perturb", "--aa",      "--spp",           "--environment",
                                "--size",    "--seed",    "--reference-spp", "--cache",

@@ -233,9 +233,10 @@ ComparePictures scene_pictures(const ComparePlan& plan, const ReferenceCache& re
   return {
       plan, exposure,
       [&references](ReferenceCache::Half half, int frame) { return references.load(half, frame); },
-      [folder = std::move(folder)](const Contender& contender, int frame) {
+      [folder = std::move(folder), is_whole = plan.is_whole](const Contender& contender,
+                                                             int frame) {
         const ExrReader reader(folder / contender.label / FilePattern(kFramePattern).name(frame));
-        const bool is_picture = contender.external || contender.antialias;
+        const bool is_picture = is_whole || contender.external || contender.antialias;
         return reader.read_planes<3>(is_picture ? "" : "indirect");
       }};
 }

@@ -76,6 +76,18 @@ void set_frames(const CompareSettings& settings, ComparePlan& plan) {
   for (int frame = first; frame <= plan.measured.back(); ++frame) plan.frames.push_back(frame);
 }
 
+// Direct light is denoised frame by frame as it is rendered.
+void set_layer(const CompareSettings& settings, ComparePlan& plan) {
+  EL_CHECK(settings.layer.empty() || settings.layer == "indirect" || settings.layer == "color",
+           "layer '{}': expected indirect or color", settings.layer);
+  plan.is_whole = settings.layer == "color";
+  EL_CHECK(!plan.is_whole || !plan.is_antialiasing(), "layer color: --aa compares it anyway");
+  for (const Contender& contender : plan.contenders) {
+    EL_CHECK(!plan.is_whole || contender.method != "meyer2006",
+             "layer color: method 'meyer2006' reads ahead; name others by --methods");
+  }
+}
+
 // References spread their samples over the places of kAntialiasReference; of the guide rays there
 // is one sample count.
 void check_antialiasing(const ComparePlan& plan) {
@@ -101,7 +113,9 @@ std::string ComparePlan::shown_text(std::string_view behind) const {
 
 std::string ComparePlan::measured_light() const {
   if (is_antialiasing()) return "the composed picture";
-  if (!recorded) return "indirect light times albedo";
+  if (!recorded) {
+    return is_whole ? "the whole picture, direct light included" : "indirect light times albedo";
+  }
   return recorded->layer == "color" ? "the beauty" : fmt::format("the layer {}", recorded->layer);
 }
 
@@ -140,6 +154,7 @@ ComparePlan make_compare_plan(const CompareSettings& settings) {
   plan.spp = split_numbers("spp", settings.spp, {1, kMostSpp});
   EL_CHECK(!plan.spp.empty(), "spp '': expected numbers with commas, such as 1,2,4");
   std::sort(plan.spp.begin(), plan.spp.end());
+  set_layer(settings, plan);
   set_frames(settings, plan);
   plan.extent = parse_size(settings.size);
   check_range("bases", settings.bases, 1, 8);

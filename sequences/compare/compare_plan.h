@@ -42,9 +42,9 @@ struct CompareSettings {
   std::string markdown;   ///< file for the tables, `-` for standard output; empty: none
   std::string paper;      ///< not empty: rerun it; `size` and `frames` are then empty if not given
   std::string directory;
+  std::string layer;  ///< what is measured; empty: `indirect` of scenes, beauty of recorded frames
   // Of recorded frames only.
   std::string reference, reference_b;  ///< as RecordedShot has them
-  std::string layer;                   ///< empty: beauty
   LayerChoice layers;
   GuideChoice guides;
   std::string cuts;
@@ -89,6 +89,7 @@ struct ComparePlan {
   bool environment = false;
   int reference_spp = 0;  ///< of each of the two references
   std::optional<double> equal_time;
+  bool is_whole = false;  ///< scenes: the picture with direct light and emission is measured
   std::optional<CropPlan> crop;
   std::optional<RecordedShot> recorded;  ///< in place of scenes: one case stands for it
   std::filesystem::path cache, directory;

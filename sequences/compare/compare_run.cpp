@@ -7,11 +7,14 @@
 #include <memory>
 #include <utility>
 
+#include "sequences/compare/external_entry.h"
 #include "sequences/compare/output_metrics.h"
 #include "sequences/compare/shared_source.h"
 #include "sequences/files/compose.h"
 #include "sequences/runs/frame_writer.h"
+#include "temporal/eigen/direct_denoiser.h"
 #include "temporal/methods.h"
+#include "temporal/stage_clock.h"
 
 namespace eigenlight {
 namespace {
@@ -24,11 +27,6 @@ double heap_bytes() {
   return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
 }
 
-fs::path make_folder(const fs::path& path) {
-  fs::create_directories(path);
-  return path;
-}
-
 // One of our own methods.
 class LiveEntry {
  public:
@@ -39,10 +37,13 @@ class LiveEntry {
     cell_.contender = contender.label;
     cell_.spp = group.spp;
     if (!contender.without.empty()) options_.without = {contender.without};
+    is_whole_ = plan.is_whole;
     restart();
     if (group.pictures.empty()) return;
-    writer_.emplace(make_folder(group.pictures / contender.label),
-                    std::vector<Layer>{Layer::kIndirect}, std::vector<ExrAttribute>{});
+    const std::vector<Layer> shown{is_whole_ ? Layer::kColor : Layer::kIndirect};
+    const fs::path folder = group.pictures / contender.label;
+    fs::create_directories(folder);
+    writer_.emplace(folder, shown, std::vector<ExrAttribute>{});
   }
 
   // A method that reads ahead leaves the shared frames with its first step.
@@ -51,6 +52,7 @@ class LiveEntry {
     SingleFrameSource once(source);
     step(once);
     reads_ahead_ = once.was_read_ahead();
+    if (direct_) denoise_direct(source.live());
   }
   void step(FrameSource& source) {
     const double before = heap_bytes();
@@ -63,6 +65,10 @@ class LiveEntry {
     held_ = peak_ = 0.0;
     const double before = heap_bytes();
     denoiser_ = make_denoiser(method_, options_);
+    if (is_whole_ && method_ != "noisy") {
+      direct_ = std::make_unique<DirectDenoiser>(
+          DenoiserOptions{.extent = options_.extent, .bases = options_.bases});
+    }
     note_growth(before);
   }
   // Of the frame of the last step.
@@ -70,11 +76,16 @@ class LiveEntry {
     const Frame& frame = denoiser_->frame();
     const FrameReport& report = denoiser_->report();
     cell_.render_ms += rendering.cpu_ms + report[Stage::kResample].cpu_ms;
-    cell_.denoise_ms += denoise_cpu_ms(report);
+    cell_.denoise_ms += denoise_cpu_ms(report) + direct_ms_;
     cell_.extra_spp += extra_samples_per_pixel(report);
-    if (writer_) writer_->write({frame, *output_, denoiser_->age()});
+    const Planes<3>& direct = direct_ ? direct_->output() : frame.direct;
+    if (writer_) writer_->write({frame, *output_, denoiser_->age(), nullptr, &direct});
     Planes<3> light;
-    modulate(frame.surface.albedo, *output_, light);
+    if (is_whole_) {
+      compose(frame, *output_, direct, light);
+    } else {
+      modulate(frame.surface.albedo, *output_, light);
+    }
     metrics_.add(references, std::move(light));
   }
   [[nodiscard]] Cell finish() && {
@@ -89,6 +100,13 @@ class LiveEntry {
   }
 
  private:
+  void denoise_direct(const LiveSource& source) {
+    const double before = heap_bytes();
+    StageClock clock;
+    direct_->step(denoiser_->frame(), source.sun(), source.soft());
+    direct_ms_ = clock.lap().cpu_ms;
+    note_growth(before);
+  }
   // Others allocate in between, so growth is added up over this method's own steps.
   void note_growth(double before) {
     held_ += heap_bytes() - before;
@@ -98,55 +116,15 @@ class LiveEntry {
   std::string method_;
   DenoiserOptions options_;
   std::unique_ptr<Denoiser> denoiser_;
+  bool is_whole_ = false;
+  std::unique_ptr<DirectDenoiser> direct_;  // of whole pictures
+  double direct_ms_ = 0.0;                  // what its last step took
   const Planes<3>* output_ = nullptr;
   bool reads_ahead_ = false;
   OutputMetrics metrics_;
   std::optional<FrameWriter> writer_;
   Cell cell_;
   double held_ = 0.0, peak_ = 0.0;
-};
-
-// A program.
-class ExternalEntry {
- public:
-  ExternalEntry(const ComparePlan& plan, const CompareGroup& group, const Contender& contender)
-      : run_(*contender.external, {plan.frames, plan.measured},
-             make_folder(group.scratch / contender.label)),
-        metrics_(metric_options(group)),
-        extent_(plan.extent) {
-    cell_.contender = contender.label;
-    cell_.spp = group.spp;
-    if (!group.pictures.empty()) pictures_ = make_folder(group.pictures / contender.label);
-  }
-
-  void add(const Frame& frame) const { run_.add(frame); }
-  [[nodiscard]] bool run(const std::function<bool()>& stops) {
-    ExternalCost cost;
-    if (!run_.run(stops, cost)) return false;
-    cell_.denoise_ms = cost.ms;
-    cell_.memory_mb = cost.peak_mb;
-    return true;
-  }
-  void measure(const ReferenceFrame& references) {
-    metrics_.add(references, run_.output(references.frame, extent_));
-    if (pictures_.empty()) return;
-    fs::copy_file(run_.output_path(references.frame),
-                  pictures_ / FilePattern(kFramePattern).name(references.frame),
-                  fs::copy_options::overwrite_existing);
-  }
-  [[nodiscard]] Cell finish(double render_ms) && {
-    cell_.render_ms = render_ms;
-    cell_.frames = metrics_.frames();
-    cell_.bad_pixels = metrics_.bad_pixels();
-    return std::move(cell_);
-  }
-
- private:
-  ExternalRun run_;
-  OutputMetrics metrics_;
-  Extent extent_;
-  fs::path pictures_;
-  Cell cell_;
 };
 
 // Removes the scratch directory however the run ends.

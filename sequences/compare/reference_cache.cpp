@@ -32,6 +32,7 @@ std::string describe(const ReferenceIdentity& identity) {
                               {"spp", identity.spp},
                               {"seed", identity.seed},
                               {"renderer", fmt::format("{:016x}", identity.renderer)}};
+  if (identity.is_whole) json["layer"] = "color";
   if (identity.antialias) json["antialias"] = format_antialias(*identity.antialias);
   return json.dump(2) + "\n";
 }
@@ -59,34 +60,42 @@ RenderOptions options_of(const ReferenceIdentity& identity, ReferenceCache::Half
   RenderOptions options;
   options.extent = identity.extent;
   options.spp = identity.spp;
-  options.direct_spp = 0;  // direct light is not kept
+  options.direct_spp = identity.shows_all() ? kReferenceDirectSpp : 0;
   options.bounces = identity.bounces;
   const bool is_second = half == ReferenceCache::Half::kB;
   options.seed = kReferenceSeeds | (2 * identity.seed + (is_second ? 1U : 0U));
   if (identity.antialias) {
     // The samples are spread over the places within a pixel.
     options.spp = std::max(identity.spp / identity.antialias->samples, 1);
-    options.direct_spp = kReferenceDirectSpp;
   }
   return options;
+}
+
+// What references show of a frame.
+void show(LiveSource& source, const Frame& frame, const std::optional<AntialiasOptions>& antialias,
+          bool is_whole, Planes<3>& out) {
+  const Planes<3>& indirect = frame.lights[0].radiance;
+  if (antialias) {
+    source.picture(*antialias, frame, indirect, out);
+  } else if (is_whole) {
+    compose(frame, indirect, out);
+  } else {
+    modulate(frame.surface.albedo, indirect, out);
+  }
 }
 
 }  // namespace
 
 std::uint64_t renderer_hash(const AnimatedScene& animated, const RenderOptions& options,
-                            const std::optional<AntialiasOptions>& antialias) {
+                            const std::optional<AntialiasOptions>& antialias, bool is_whole) {
   RenderOptions probe = options;
   probe.spp = 1;
-  probe.direct_spp = antialias ? 1 : 0;
+  probe.direct_spp = antialias || is_whole ? 1 : 0;
   LiveSource source(animated.scene, animated.animation, probe, {0});
   Frame frame;
   if (!source.next(frame)) throw std::logic_error("a source of one frame has one");
   Planes<3> light;
-  if (antialias) {
-    source.picture(*antialias, frame, frame.lights[0].radiance, light);
-  } else {
-    modulate(frame.surface.albedo, frame.lights[0].radiance, light);
-  }
+  show(source, frame, antialias, is_whole, light);
   return hash_rows(light);
 }
 
@@ -117,12 +126,8 @@ void ReferenceCache::render(Half half, const std::vector<int>& frames,
   Frame frame;
   Planes<3> light;
   while (source.next(frame)) {
-    if (identity_.antialias) {
-      source.picture(*identity_.antialias, frame, frame.lights[0].radiance, light);
-    } else {
-      modulate(frame.surface.albedo, frame.lights[0].radiance, light);
-    }
-    const std::string layer = identity_.antialias ? "" : "indirect.";
+    show(source, frame, identity_.antialias, identity_.is_whole, light);
+    const std::string layer = identity_.shows_all() ? "" : "indirect.";
     const ExrChannel channels[] = {{layer + "R", ExrType::kFloat, &light[0]},
                                    {layer + "G", ExrType::kFloat, &light[1]},
                                    {layer + "B", ExrType::kFloat, &light[2]},
@@ -135,7 +140,7 @@ void ReferenceCache::render(Half half, const std::vector<int>& frames,
 
 Planes<3> ReferenceCache::load(Half half, int frame) const {
   const std::filesystem::path path = file(half, frame);
-  Planes<3> planes = ExrReader(path).read_planes<3>(identity_.antialias ? "" : "indirect");
+  Planes<3> planes = ExrReader(path).read_planes<3>(identity_.shows_all() ? "" : "indirect");
   const Extent size = planes[0].extent();
   if (size == identity_.extent) return planes;
   throw std::runtime_error(fmt::format("{} is {}x{}, expected {}x{}", path.string(), size.width,

@@ -37,14 +37,18 @@ struct ReferenceIdentity {
   /// Of the indirect light times albedo where absent, else of the composed picture, antialiased in
   /// this way; `spp` is then what its samples of a pixel have together.
   std::optional<AntialiasOptions> antialias = std::nullopt;
+  /// Of the composed picture without antialiasing.
+  bool is_whole = false;
+
+  [[nodiscard]] bool shows_all() const { return is_whole || antialias; }
 };
 
 /// What the renderer makes of a scene: a hash of frame 0 at one sample a pixel, of the indirect
-/// light or of the antialiased picture. A change of the renderer that keeps the bits of those paths
-/// keeps the references valid.
+/// light, or of the composed or the antialiased picture. A change of the renderer that keeps the
+/// bits of those paths keeps the references valid.
 [[nodiscard]] std::uint64_t renderer_hash(
     const AnimatedScene& animated, const RenderOptions& options,
-    const std::optional<AntialiasOptions>& antialias = std::nullopt);
+    const std::optional<AntialiasOptions>& antialias = std::nullopt, bool is_whole = false);
 
 /// Two independent renderings A and B of each frame, one EXR file each, in a directory named after
 /// the scene and a hash of the identity. What is there is used, frame by frame, so that a stopped

@@ -18,6 +18,8 @@ class SharedSource final : public FrameSource {
   [[nodiscard]] bool render();
   /// The frame that render() rendered last, before any resampling.
   [[nodiscard]] const Frame& frame() const { return frame_; }
+  /// Where it comes from, with the samples that the method at hand has asked for.
+  [[nodiscard]] const LiveSource& live() const { return live_; }
   /// What the last render() took.
   [[nodiscard]] const StageTime& render_time() const { return render_time_; }
 
