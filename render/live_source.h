@@ -17,7 +17,8 @@ struct RenderOptions {
   /// [0, 65536] samples of direct light per pixel; 0 leaves it black. Of light that rays meet by
   /// chance, the first `spp` samples are the first rays of indirect light.
   int direct_spp = 2;
-  /// [0, 65536] samples of the suns at pixels around which some sample is lit and another is not.
+  /// [0, 65536] samples of the suns at pixels around which some sample is lit and another is not
+  /// (direct_sampler.h).
   int penumbra_spp = 16;
   int bounces = 3;         ///< [1, 64] bounces of indirect light after the first hit
   std::uint32_t seed = 0;  ///< different seeds give independent noise

@@ -5,6 +5,7 @@
 namespace eigenlight {
 namespace {
 
+constexpr int kReach = 2;  // pixels around one that tell of a penumbra
 constexpr std::uint8_t kLit = 1, kHidden = 2, kMixed = kLit | kHidden;
 
 std::uint8_t seen_by(const glm::vec3& light) {
@@ -66,8 +67,9 @@ void DirectSampler::sample(glm::ivec2 at, const GuideHit& hit, std::uint32_t key
 bool DirectSampler::is_penumbra(glm::ivec2 at) const {
   if (samples_.penumbra_spp <= samples_.spp || seen_(at.x, at.y) == 0) return false;
   std::uint8_t seen = 0;
-  for (int y = std::max(at.y - 1, 0); y <= std::min(at.y + 1, seen_.height() - 1); ++y) {
-    for (int x = std::max(at.x - 1, 0); x <= std::min(at.x + 1, seen_.width() - 1); ++x) {
+  for (int y = std::max(at.y - kReach, 0); y <= std::min(at.y + kReach, seen_.height() - 1); ++y) {
+    for (int x = std::max(at.x - kReach, 0); x <= std::min(at.x + kReach, seen_.width() - 1); ++x) {
+      if (x == at.x && y == at.y) continue;
       seen = static_cast<std::uint8_t>(seen | seen_(x, y));
     }
   }

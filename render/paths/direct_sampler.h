@@ -17,9 +17,9 @@ struct DirectSamples {
 };
 
 /// Samples direct light. A sun is either seen or hidden but in its penumbra: where all samples of
-/// the 3 x 3 pixels around are lit, or none is, a few of them say all; elsewhere further ones are
-/// drawn. A pixel is told to lie in a penumbra by its neighbors as well, and hardly ever by its own
-/// samples alone, which would favor what the first of them say.
+/// the other pixels of 5 x 5 around are lit, or none is, a few say all; elsewhere further ones are
+/// drawn. A pixel's own samples do not take part in that decision: it would depend on what they
+/// say, and penumbras would become steeper.
 ///
 /// Tiles can be sampled in any order and at the same time. Bits depend on keys alone.
 class DirectSampler {

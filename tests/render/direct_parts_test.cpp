@@ -86,7 +86,7 @@ TEST(DirectParts, PenumbrasGetMoreSamplesAndOtherPixelsNone) {
   const Shadow plain = render_shadow(options_of(1, 0)), fine = render_shadow(options_of(1, 16));
   const std::int64_t extra = fine.frame.rays - plain.frame.rays;
   EXPECT_GT(extra, 15 * kExtent.pixels() / 10);
-  EXPECT_LT(extra, 15 * kExtent.pixels() / 3);
+  EXPECT_LT(extra, 15 * kExtent.pixels() / 2);
   EXPECT_LT(squared_error(fine.sun, truth.sun), 0.1 * squared_error(plain.sun, truth.sun));
   // Off the penumbra one sample has no noise.
   for (int y = 0; y < kExtent.height; ++y) {
