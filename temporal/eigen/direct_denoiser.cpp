@@ -11,6 +11,7 @@ namespace {
 
 DenoiserOptions one_layer(DenoiserOptions options) {
   options.layers = 1;
+  options.bases = 1;
   options.without.clear();
   return options;
 }
@@ -19,6 +20,7 @@ EigenOptions without_bound() {
   EigenOptions options;
   options.fireflies.deviations = 1000.0f;
   options.fireflies.times = 1000.0f;
+  options.even_gain = true;
   return options;
 }
 

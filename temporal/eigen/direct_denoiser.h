@@ -8,14 +8,15 @@ namespace eigenlight {
 /// Denoises direct light in two parts, and gives their sum.
 ///
 /// Light of sky and local lights is as soft and as noisy as indirect light: it goes through a loop
-/// of its own (EigenDenoiser), without further samples, and without a bound of fireflies, which
-/// takes a narrow sky that few rays meet for some. Light of suns has edges that move over surfaces
-/// and are in no guide, and noise nowhere but there: the renderer draws more samples in penumbras,
-/// and the light stays as it is sampled. Any filter of it blurred edges more than it smoothed them
+/// of its own (EigenDenoiser), without further samples, with one basis whose gain is a ratio of
+/// sums of light (even_sums.h), and without a bound of fireflies: of a narrow sky that few rays
+/// meet both would take light. Light of suns has edges that move over surfaces and are in no guide,
+/// and noise nowhere but there: the renderer draws more samples in penumbras, and the light stays
+/// as it is sampled. Any filter of it blurred edges more than it smoothed them
 /// (docs/experiments/2026-12-direct-light.md).
 class DirectDenoiser {
  public:
-  /// Takes size and number of bases of `options`. Throws std::invalid_argument on bad ones.
+  /// Takes the size of `options`. Throws std::invalid_argument on a bad one.
   explicit DirectDenoiser(const DenoiserOptions& options);
 
   /// Denoises the direct light of the next frame, radiance over albedo. Light of suns that is not
