@@ -13,9 +13,9 @@ namespace eigenlight {
 /// Time and statistics of a frame after it was denoised.
 struct FrameOutput {
   StageTime write;
-  StageTime direct = {};  ///< direct light was denoised
   StageTime antialias = {};
   PictureStats picture = {};
+  StageTime direct = {};  ///< direct light was denoised
 };
 
 /// One JSON object per frame, in the order of the run.

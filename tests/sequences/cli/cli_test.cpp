@@ -257,7 +257,7 @@ TEST_F(CliTest, ResumingAFinishedRunRendersNothing) {
 
 // All layers but the color are those of the guide rays, and run and files name the antialiasing.
 TEST_F(CliTest, AntialiasingChangesOnlyTheColor) {
-  EXPECT_EQ(render("plain", {"--frames", "0"}).status, 0);
+  EXPECT_EQ(render("plain", {"--frames", "0", "--aa", "none"}).status, 0);
   const ExrReader plain(dir_ / "plain/frame.0000.exr");
   for (const char* aa : {"lookup", "sraa", "supersample:2"}) {
     EXPECT_EQ(render(aa, {"--frames", "0", "--aa", aa}).status, 0);
@@ -281,7 +281,7 @@ TEST_F(CliTest, DirectLightIsNotRenderedUnlessALayerShowsIt) {
     const std::string log = bytes(run + "/frames.jsonl");
     return nlohmann::json::parse(log.substr(0, log.find('\n'))).at("rays").get<std::int64_t>();
   };
-  EXPECT_LT(rays("some"), 0.75 * static_cast<double>(rays("all")));
+  EXPECT_LT(rays("some"), rays("all") - std::int64_t{64} * 36);  // two samples a pixel
   const ExrReader all(dir_ / "all/frame.0001.exr"), some(dir_ / "some/frame.0001.exr");
   for (const char* layer : {"indirect", "noisy"}) {
     EXPECT_TRUE(planes_equal(some.read_planes<3>(layer), all.read_planes<3>(layer))) << layer;

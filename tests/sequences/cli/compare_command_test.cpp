@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -94,6 +95,36 @@ TEST_F(CompareCommand, WritesResultsTableAndPage) {
   const std::string page = read_whole_file(dir_ / "a/index.html");
   EXPECT_THAT(page, AllOf(HasSubstr("Error against time"), HasSubstr("data:image/jpeg")));
   EXPECT_FALSE(std::filesystem::exists(dir_ / "a/scratch"));
+}
+
+// With direct light, which programs get noisy: one that copies it is as good as the method noisy.
+TEST_F(CompareCommand, MeasuresWholePictures) {
+  const Outcome run = compare("whole", {"--layer", "color", "--methods", "eigenlight,noisy",
+                                        "--spp", "3", "--external", "copy=cp {color} {output}"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const Json found = results("whole");
+  const auto relmse = [&](const char* name) {
+    return cell(found, name, 3)["mean"]["relmse"].get<double>();
+  };
+  EXPECT_LT(relmse("eigenlight"), 0.3 * relmse("noisy"));
+  EXPECT_NEAR(relmse("copy"), relmse("noisy"), 1e-9);
+  for (const std::string method : {"eigenlight", "noisy"}) {
+    const Outcome rendered =
+        call({"render", "cornell", "-o", dir_ / method, "--size", "48x27", "--frames", "0-3",
+              "--bounces", "2", "--method", method, "--layers", "color", "--aa", "none"});
+    ASSERT_EQ(rendered.status, 0) << rendered.err;
+    const std::filesystem::path shown = dir_ / "whole" / "frames/cornell" / method;
+    for (const char* file : {"frame.0002.exr", "frame.0003.exr"}) {
+      EXPECT_TRUE(planes_equal(ExrReader(shown / file).read_planes<3>(""),
+                               ExrReader(dir_ / method / file).read_planes<3>("")))
+          << method << ' ' << file;
+    }
+  }
+  // References of indirect light are others.
+  ASSERT_EQ(compare("a", {"--methods", "noisy", "--spp", "3"}).status, 0);
+  EXPECT_GT(
+      std::abs(cell(results("a"), "noisy", 3)["mean"]["relmse"].get<double>() - relmse("noisy")),
+      1e-3);
 }
 
 // Compared frames equal those of `render`, and figures equal those of `evaluate`.

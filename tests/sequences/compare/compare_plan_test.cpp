@@ -94,6 +94,19 @@ TEST(ComparePlan, WaysOfAntialiasingAreContenders) {
   expect_refused(settings, "blur");
 }
 
+TEST(ComparePlan, WholePicturesAreMeasuredWhereDirectLightIsAtHand) {
+  CompareSettings settings = settings_of({"atrium"});
+  EXPECT_FALSE(make_compare_plan(settings).is_whole);
+  settings.layer = "color";
+  settings.methods = "eigenlight,noisy";
+  EXPECT_TRUE(make_compare_plan(settings).is_whole);
+  EXPECT_THAT(make_compare_plan(settings).measured_light(), HasSubstr("the whole picture"));
+  settings.methods = "eigenlight,meyer2006";
+  expect_refused(settings, "method 'meyer2006' reads ahead");
+  settings.layer = "direct";
+  expect_refused(settings, "layer 'direct': expected indirect or color");
+}
+
 TEST(ComparePlan, TheBaselineIsTheNoisyInput) {
   CompareSettings settings = settings_of({"atrium"});
   settings.methods = "mean,noisy";

@@ -38,7 +38,7 @@ TEST(RunLog, WritesOneLinePerFrame) {
   const TempDir dir;
   {
     RunLog log(dir.path(), {5, 6}, 0);
-    log.append(report_of(5), 3, {{1.5, 2.5}, {7.0, 8.0}, {900, 1, 12}});
+    log.append(report_of(5), 3, {{1.5, 2.5}, {7.0, 8.0}, {900, 1, 12}, {4.0, 6.0}});
     log.append(report_of(6), 3, {});
   }
   const std::string text = read_whole_file(dir / "frames.jsonl");
@@ -51,6 +51,7 @@ TEST(RunLog, WritesOneLinePerFrame) {
   EXPECT_EQ(line["stages"]["source"]["cpu_ms"], 19.0);
   EXPECT_EQ(line["stages"]["write"]["wall_ms"], 1.5);
   EXPECT_EQ(line["stages"]["antialias"]["cpu_ms"], 8.0);
+  EXPECT_EQ(line["stages"]["direct"]["cpu_ms"], 6.0);
   EXPECT_EQ(line["antialias"]["rays"], 900);
   EXPECT_EQ(line["antialias"]["non_finite"], 1);
   EXPECT_EQ(line["antialias"]["unmatched"], 12);

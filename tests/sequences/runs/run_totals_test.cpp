@@ -36,10 +36,11 @@ TEST(RunTotals, SummariesHoldMeansAndRates) {
   EXPECT_EQ(summary["directory"], "out");
   EXPECT_THAT(totals.to_text("out"), HasSubstr("render 10.0, denoise 3.0, write 3.0 ms a frame"));
   EXPECT_THAT(totals.to_text("out"), HasSubstr("excluded: 4 pixels or samples"));
-  totals.add(report_of(2), {{3.0, 4.0}, {9.0, 18.0}, {900, 1, 12}});
-  EXPECT_THAT(totals.to_text("out"), HasSubstr("antialias 3.0, write 3.0 ms a frame"));
+  totals.add(report_of(2), {{3.0, 4.0}, {9.0, 18.0}, {900, 1, 12}, {6.0, 9.0}});
+  EXPECT_THAT(totals.to_text("out"), HasSubstr("denoise 5.0, antialias 3.0, write 3.0 ms a frame"));
   EXPECT_THAT(totals.to_text("out"), HasSubstr("excluded: 7 pixels or samples"));
   EXPECT_EQ(json::parse(totals.to_json("out"))["mean_ms"]["antialias"]["cpu"], 6.0);
+  EXPECT_EQ(json::parse(totals.to_json("out"))["mean_ms"]["direct"]["cpu"], 3.0);
 }
 
 }  // namespace
