@@ -6,13 +6,14 @@
 namespace eigenlight {
 namespace {
 
-/// A floor, half of it in the shadow of a plate, under a sun without width whose shadow's edge is
-/// slanted in the picture.
+/// A floor, half of it in the shadow of a black plate, under a sun without width whose shadow's
+/// edge is slanted in the picture. No light is indirect.
 Scene shadowed_floor() {
   Scene scene;
   const auto gray = test::add_material(scene, glm::vec3(0.5f));
   test::add_floor(scene, gray, 5.0f);
-  test::add_quad(scene, gray, {glm::vec3(-3, 2, -9), glm::vec3(9, 0, 0), glm::vec3(6, 0, 18)});
+  const auto black = test::add_material(scene, glm::vec3(0.0f));
+  test::add_quad(scene, black, {glm::vec3(-3, 2, -9), glm::vec3(9, 0, 0), glm::vec3(6, 0, 18)});
   scene.lights.suns = {{glm::vec3(0, 1, 0), glm::vec3(3.0f), 0.0f}};
   return scene;
 }
