@@ -35,9 +35,11 @@ bool denoises_direct(const RenderSettings& settings, const RenderPlan& plan) {
 }
 
 // Without this check the kernel might kill the process. Two frames, output and the encoded file
-// take about 350 bytes per pixel, a basis twice three floats.
-void check_memory(Extent extent, int bases) {
-  const double needed = static_cast<double>(extent.pixels()) * (350.0 + 24.0 * bases);
+// take about 350 bytes per pixel, a basis twice three floats, and denoised direct light 540 bytes.
+void check_memory(const RenderPlan& plan) {
+  const Extent extent = plan.render.extent;
+  const double bytes = 350.0 + 24.0 * plan.bases + (plan.denoises_direct ? 540.0 : 0.0);
+  const double needed = static_cast<double>(extent.pixels()) * bytes;
   const double present = machine_memory();
   EL_CHECK(needed <= present,
            "size {}x{}: needs about {:.0f} GB of memory, this machine has {:.0f}", extent.width,
@@ -92,13 +94,13 @@ RenderPlan make_plan(const RenderSettings& settings) {
 
   RenderOptions& render = plan.render;
   render.extent = parse_size(settings.size);
-  check_memory(render.extent, plan.bases);
   render.spp = settings.spp.value_or(is_reference ? kReferenceSpp : render.spp);
   const int direct_spp =
       settings.direct_spp.value_or(is_reference ? kReferenceDirectSpp : render.direct_spp);
   check_range("direct-spp", direct_spp, 1, 65536);
   render.direct_spp = shows_direct(plan.layers) ? direct_spp : 0;
   plan.denoises_direct = denoises_direct(settings, plan);
+  check_memory(plan);
   render.bounces = settings.bounces;
   render.seed = static_cast<std::uint32_t>(settings.seed) | (is_reference ? kReferenceSeeds : 0U);
   check_range("spp", render.spp, 1, 65536);
