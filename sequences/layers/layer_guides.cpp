@@ -83,7 +83,10 @@ void LayerPlanner::find_alpha(ViewPlan& plan) {
   FileLayer layer = *plan.beauty;
   layer.channels = {layer.channels[3]};
   layer.name = alpha;
-  PlannedLight light{"alpha", std::move(layer), std::nullopt, false, true, true};
+  PlannedLight light;
+  light.what = "alpha";
+  light.layer = std::move(layer);
+  light.is_direct = light.is_alpha = true;
   plan.lights.push_back(std::move(light));
 }
 

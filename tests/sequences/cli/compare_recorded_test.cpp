@@ -231,7 +231,7 @@ TEST_F(CompareRecorded, EachMistakeIsOneLineAndMakesNothing) {
       {{"compare", path("s", 1), "-o", dir_ / "x", "--reference", "r.####.exr"},
        "expected a pattern such as shot.####.exr"},
       {{"compare", "cornell", "-o", dir_ / "x", "--layer", "DiffInd"},
-       "--layer is for recorded frames"},
+       "layer 'DiffInd': expected indirect or color"},
       {{"compare", dir_ / "s.####.exr", "-o", dir_ / "x", "--reference", dir_ / "none.####.exr"},
        "none.####.exr: no frame of "},
   };
