@@ -6,6 +6,7 @@
 
 #include "frame/tiles.h"
 #include "spatial/packed_guides.h"
+#include "spatial/soft_atrous_kernel.h"
 
 namespace eigenlight {
 
@@ -40,9 +41,9 @@ struct SoftLayer {
 /// or B3 spline weights (radius 2), e(x) = (1 - x/8)^8 up to x = 8, then 0. Variances follow:
 /// var(p) = sum (k w)^2 var(q) / (sum k w)^2. The weight of a pixel itself is k(0). Pixels without
 /// surface (id 0), or whose light or variance is not finite, give nothing; such a pixel of a
-/// surface takes what its neighbors give it.
+/// surface takes what its neighbors give it, or 0 if their weights sum up to less than 1e-15.
 ///
-/// Weights of geometry are calculated once for all layers.
+/// Weights of geometry are calculated once for all layers. All instruction sets give the same bits.
 class SoftAtrous {
  public:
   SoftAtrous(Extent extent, const SoftAtrousOptions& options);
@@ -53,38 +54,21 @@ class SoftAtrous {
  private:
   struct Buffers {
     Planes<3> light;
-    // tolerance: d, the difference of luminance that counts as the same light.
-    Plane<float> variance, mean, tolerance, usable, sum;
-  };
-  // One neighbor of a row of pixels.
-  struct TapRow {
-    int y, dx, dy, x0, x1;
-    float kernel;
-    const float* geometry;
+    Plane<float> variance, mean, tolerance, usable, luminance;
   };
 
   void prepare(const Plane<PackedGuide>& guides);
-  void find_near();
-  void exclude_bad(std::span<const SoftLayer> layers);
-  void find_means(const SoftLayer& layer, Buffers& buffer, int y) const;
-  void filter_row(std::span<const SoftLayer> layers, int pass, int y);
-  void start_row(const SoftLayer& layer, Buffers& out, int y) const;
-  void add_tap(const SoftLayer& layer, const TapRow& tap, Buffers& out) const;
-  void finish_row(Buffers& out, int y) const;
+  [[nodiscard]] std::vector<SoftWork> start(std::span<const SoftLayer> layers);
 
   Extent extent_;
   SoftAtrousOptions options_;
-  // Guides: normal over its width, color, log depth; and 1 where the pixel is a surface.
-  std::vector<Plane<float>> guides_;
-  Plane<float> surface_;
-  Plane<float> geometry_;  // weights of the tap at hand, for each row
-  // Weights of geometry to the right, below left, below, below right.
+  SoftGuides guides_;
   std::vector<Plane<float>> near_;
   std::vector<Buffers> buffers_;
 };
 
 /// The variance of luminance around each pixel of one frame: over the 5 x 5 pixels that show a
-/// surface and are finite. For light without history.
+/// surface and are finite. For light without history. NaN where a square overflows.
 void variance_of_frame(const FrameInput& frame, const Planes<3>& light, Plane<float>& variance);
 
 }  // namespace eigenlight

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "spatial/atrous.h"
+#include "spatial/soft_atrous.h"
 #include "tests/bench/floors.h"
 
 namespace eigenlight {
@@ -12,6 +13,14 @@ namespace eigenlight {
 /// summed up.
 [[nodiscard]] inline double atrous_flops(const AtrousOptions& options) {
   return 39.0 * options.passes * 8;
+}
+
+/// Per tap of soft_atrous.h: geometry 20 + 5, comparison of light 4 + 5, weights 2, and sums of
+/// weight 1, color 6 and variance 3; per pixel of a mean 8 weights of geometry, which are shared,
+/// and 9 times 8.
+[[nodiscard]] inline double soft_atrous_flops(const SoftAtrousOptions& options) {
+  const int taps = options.radius == 1 ? 8 : 24;
+  return options.passes * (46.0 * taps + 9.0 * 8);
 }
 
 /// guided_filter.h with 4 guides and 3 channels: 30 sums for the fits and 16 of coefficients, each

@@ -5,7 +5,7 @@ import re
 import sys
 
 NAME = re.compile(r"(\w+)/height:(\d+)/(bases|radius):(\d+)/threads:(\d+)/target:(\d+)")
-WITHOUT_BASES = {"innovation", "budget", "atrous", "guided"}
+WITHOUT_BASES = {"innovation", "budget", "atrous", "soft_atrous", "guided"}
 
 
 class Result:

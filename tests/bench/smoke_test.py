@@ -54,7 +54,7 @@ def check_stages(path):
     if "loop_pixels" in stages:
         assert "64x36: radius | guided filter" in table.scaling(results)
         return
-    for arithmetic in ("atrous", "guided"):
+    for arithmetic in ("atrous", "soft_atrous", "guided"):
         assert all(r["fma_ratio"] > 0 for r in results if r.stage == arithmetic)
     assert table.loop(results, [36], [5]).count("\n") == 2
     text = table.roofline(results, None, None)

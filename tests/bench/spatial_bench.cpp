@@ -4,11 +4,13 @@
 //   stage        reads                                        writes
 //   budget       id, age                                      1 byte
 //   atrous       color 3, variance 1, normal 3, depth, id     color 3, variance 1
+//   soft_atrous  color 3, variance 1, 8 packed guides         color 3, variance 1
 //   guided       normal 3, depth, id, signal 3, weight, byte  signal 3
 #include <cmath>
 
 #include "spatial/guided_filter.h"
 #include "spatial/sample_budget.h"
+#include "spatial/soft_atrous.h"
 #include "temporal/eigen/eigen_denoiser.h"
 #include "tests/bench/filter_work.h"
 #include "tests/bench/register.h"
@@ -71,6 +73,27 @@ void atrous(benchmark::State& state) {
   measure(state, setting.extent, {9 * kFloat, 4 * kFloat, atrous_flops(options)}, run);
 }
 
+void soft_atrous(benchmark::State& state) {
+  const Setting setting(state);
+  Inputs inputs(setting);
+  const SoftAtrousOptions options{.passes = 5, .radius = 1};
+  SoftAtrous filter(setting.extent, options);
+  Plane<PackedGuide> guides;
+  pack_guides(inputs.frame, {}, guides);
+  const SoftLayer layers[] = {{&inputs.out, &inputs.variance, 5.0f}};
+  const auto run = [&] {
+    copy_planes(inputs.frame.lights[0].radiance, inputs.out);
+    inputs.variance.fill(0.05f);
+    StageClock clock;
+    filter.process(guides, layers);
+    return clock.lap().cpu_ms;
+  };
+  benchmark::DoNotOptimize(run());
+  if (!is_sound(inputs.out, setting.extent)) return state.SkipWithError("nothing filtered");
+  measure(state, setting.extent,
+          {4 * kFloat + sizeof(PackedGuide), 4 * kFloat, soft_atrous_flops(options)}, run);
+}
+
 void guided(benchmark::State& state) {
   const Setting setting(state);
   Inputs inputs(setting);
@@ -87,6 +110,7 @@ void guided(benchmark::State& state) {
 
 BENCHMARK(budget)->Apply(of_one_basis);
 BENCHMARK(atrous)->Apply(of_one_basis);
+BENCHMARK(soft_atrous)->Apply(of_one_basis);
 BENCHMARK(guided)->Apply(of_one_basis);
 
 }  // namespace
