@@ -1,10 +1,9 @@
 #include "temporal/gather/frame_link.h"
 
 #include <cmath>
-#include <numeric>
-#include <vector>
 
 #include "frame/tiles.h"
+#include "temporal/gather/count_pixels.h"
 
 namespace eigenlight {
 namespace {
@@ -55,21 +54,16 @@ void link_back(const FrameInput& frame, FrameLink& link) {
 
 std::int64_t count_new(const FrameLink& back, const Plane<PackedGuide>& guides,
                        const Plane<PackedGuide>& before, const GuideWidths& widths) {
-  std::vector<std::int64_t> rows(static_cast<std::size_t>(guides.height()));
-  parallel_for(guides.height(), [&](int y) {
-    for (int x = 0; x < guides.width(); ++x) {
-      if (!shows_surface(guides(x, y))) continue;
-      const Link& link = back(x, y);
-      int px = 0, py = 0;
-      const bool is_old = link.known != 0.0f &&
-                          nearest(guides.extent(), static_cast<float>(x) + link.x,
-                                  static_cast<float>(y) + link.y, px, py) &&
-                          guide_weight(guides(x, y), before(px, py),
-                                       depth_steps(link.log_depth, widths)) >= kLeastMatch;
-      rows[static_cast<std::size_t>(y)] += is_old ? 0 : 1;
-    }
+  return count_pixels(guides.extent(), [&](int x, int y) {
+    if (!shows_surface(guides(x, y))) return false;
+    const Link& link = back(x, y);
+    int px = 0, py = 0;
+    return link.known == 0.0f ||
+           !nearest(guides.extent(), static_cast<float>(x) + link.x, static_cast<float>(y) + link.y,
+                    px, py) ||
+           guide_weight(guides(x, y), before(px, py), depth_steps(link.log_depth, widths)) <
+               kLeastMatch;
   });
-  return std::accumulate(rows.begin(), rows.end(), std::int64_t{0});
 }
 
 void LinkAhead::find(const FrameLink& back, const Plane<PackedGuide>& guides,

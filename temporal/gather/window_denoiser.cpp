@@ -1,9 +1,10 @@
 #include "temporal/gather/window_denoiser.h"
 
-#include <cmath>
+#include <algorithm>
 
 #include "frame/check.h"
 #include "frame/tiles.h"
+#include "temporal/gather/count_pixels.h"
 #include "temporal/gather/even_light.h"
 #include "temporal/stage_clock.h"
 
@@ -93,15 +94,13 @@ void WindowDenoiser::count(const FrameInput& frame, Record& record) const {
   const bool has_before =
       records_.size() > 1 && records_[records_.size() - 2].index == record.previous_index;
   report.cut = !has_before;
-  for (int y = 0; y < extent_.height; ++y) {
-    for (int x = 0; x < extent_.width; ++x) {
-      if (!shows_surface(record.guides(x, y))) continue;
-      ++report.surface_pixels;
-      bool is_usable = true;
-      for (const LightRecord& light : record.lights) is_usable &= light(x, y).usable != 0.0f;
-      report.non_finite_pixels += is_usable ? 0 : 1;
-    }
-  }
+  const auto is_surface = [&](int x, int y) { return shows_surface(record.guides(x, y)); };
+  report.surface_pixels = count_pixels(extent_, is_surface);
+  report.non_finite_pixels = count_pixels(extent_, [&](int x, int y) {
+    return is_surface(x, y) &&
+           std::any_of(record.lights.begin(), record.lights.end(),
+                       [&](const LightRecord& light) { return light(x, y).usable == 0.0f; });
+  });
   report.new_pixels = has_before ? count_new(record.back, record.guides,
                                              records_[records_.size() - 2].guides, options_.guides)
                                  : report.surface_pixels;

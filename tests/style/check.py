@@ -30,7 +30,7 @@ ROOMS = {
     "temporal/change": ["spatial", "temporal/bases"],
     "temporal/samples": ["temporal/bases", "temporal/stage_clock.h"],
     "temporal/eigen": ["temporal/change", "temporal/samples"],
-    "temporal/gather": ["temporal/eigen"],
+    "temporal/gather": ["spatial", "temporal/stage_clock.h"],
     "temporal/baselines": ["spatial/rivals", "temporal/samples"],
     "temporal": ["temporal/eigen", "temporal/baselines"],
     "render/scene": ["frame"],
