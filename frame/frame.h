@@ -86,6 +86,10 @@ struct Frame : FrameInput {
   }
 };
 
+/// Copies all that the denoiser reads of a frame but its layers of light, which stay as they are in
+/// `to`, reusing its storage. Planes that are empty in `from` become empty.
+void copy_all_but_lights(const FrameInput& from, FrameInput& to);
+
 /// Copies all of a frame, reusing the storage of `to`. Planes that are empty in `from` become
 /// empty.
 void copy_frame(const Frame& from, Frame& to);
